@@ -45,7 +45,7 @@ const CARDS = [
 ];
 
 /** Whether the lesson was done or hidden: "done". */
-const kept = storedText("lesson", "open");
+const openState = storedText("lesson", "open");
 
 /** The cards of the lesson for who looks at this page. */
 export const cards = computed(() => (linked.value
@@ -55,8 +55,8 @@ export const cards = computed(() => (linked.value
 /** A card of the lesson that the address names; its texts are read in a dialog. */
 /** @type {(one: LessonCard, n: number) => Card} */
 function asCard({ title, ask, state }, n) {
-  const { form, ...others } = state ?? {};
-  const set = Object.entries(others).filter(([, value]) => value !== null);
+  const { form, ...pageState } = state ?? {};
+  const set = Object.entries(pageState).filter(([, value]) => value !== null);
   return {
     title: title ?? `Card ${n + 1}`, text: ask?.text ?? "",
     state: { ...Object.fromEntries(set), ...(form && { form: asTexts(form) }) },
@@ -81,16 +81,16 @@ export function followLesson() {
     const said = SAID_BY_LINKS.filter((name) => page[name].peek() !== null);
     const typed = page.form.peek();
     const preset = [...state.form ?? []].filter(([name]) => !typed.has(name));
-    const own = Object.fromEntries(said.map((name) => [name, page[name].peek()]));
+    const pageState = Object.fromEntries(said.map((name) => [name, page[name].peek()]));
     openCard(number);
-    change({ ...own, ...(state.form && { form: new URLSearchParams([...preset, ...typed]) }) });
+    change({ ...pageState, ...(state.form && { form: new URLSearchParams([...preset, ...typed]) }) });
   });
 }
 
 /** The number of the open card, from 1; null where the lesson is hidden. At a first visit it is the first. */
 export const cardNumber = computed(() => {
   if (page.hidden.value.includes("card")) return null;
-  const number = page.card.value ?? (kept.value === "done" || page.lesson.value !== null ? null : 1);
+  const number = page.card.value ?? (openState.value === "done" || page.lesson.value !== null ? null : 1);
   return number !== null && number <= cards.value.length ? number : null;
 });
 
@@ -100,7 +100,7 @@ export const card = computed(() => (cardNumber.value === null ? null : cards.val
 /** Open a card, and of the page what it is about. @param {number} number from 1 */
 export function openCard(number) {
   const { state = {} } = cards.peek()[number - 1];
-  change({ view: "race", card: number, hidden: page.hidden.peek().filter((one) => one !== "card"), ...state });
+  change({ view: "race", card: number, hidden: page.hidden.peek().filter((name) => name !== "card"), ...state });
 }
 
 /** Go to another card; after the last one the lesson is done. @param {1 | -1} direction */
@@ -113,7 +113,7 @@ export function turnCard(direction) {
 export const openLesson = () => openCard(1);
 
 export const closeLesson = () => {
-  kept.value = "done";
+  openState.value = "done";
   change({ card: null, lesson: null });
 };
 
@@ -129,7 +129,7 @@ export const linkProblem = signal("");
 export const linkedCard = computed(() => linked.value?.cards[(page.card.value ?? 1) - 1] ?? null);
 
 /** Whether a tab of the panel is shown by the open card. @param {string} tab */
-export const isShown = (tab) => linkedCard.value?.show?.some((one) => one === tab) ?? true;
+export const isShown = (tab) => linkedCard.value?.show?.some((name) => name === tab) ?? true;
 
 /** Load the lesson that the address names, and tell once it is there. @param {() => unknown} onLoaded */
 export const followLinkedLesson = (onLoaded) => effect(() => {

@@ -22,13 +22,13 @@ import { messageOf } from "../../js/titles.js";
 /** @import { FormValue, GaitConfig, Preview, RobotConfig, SettingOption } from "../../js/types.js" */
 
 /** What the server tells: of which question, and under which gait. */
-/** @typedef {{ of: string, known: Preview, gait: GaitConfig }} Told */
+/** @typedef {{ of: string, preview: Preview, gait: GaitConfig }} PreviewAnswer */
 /** What the fields change. @typedef {"leg" | "all" | "torso"} Part */
 
 /** After so long the server is asked about the next change [ms]. */
 const PAUSE_MS = 120;
 
-/** The body as it is now; null until the server has told of the robot. @type {Signal<Body | null>} */
+/** The body as it is now; null until the server has previewed the robot. @type {Signal<Body | null>} */
 export const body = signal(null);
 /** As it was opened. @type {Signal<Body | null>} */
 export const first = signal(null);
@@ -43,10 +43,10 @@ export const isMirrored = signal(true);
 /** What was typed in a field, by `keyOf`. @type {Signal<Record<string, string>>} */
 const typed = signal({});
 
-/** @type {Signal<Reply<Told>>} */
+/** @type {Signal<Reply<PreviewAnswer>>} */
 const reply = signal({ answer: null, error: null, again: false });
-/** What was told last, also of a body before. @type {Signal<Told | null>} */
-export const told = signal(null);
+/** The last preview, also of an earlier body. @type {Signal<PreviewAnswer | null>} */
+export const previewAnswer = signal(null);
 
 // ---- what the server tells of the body
 
@@ -61,12 +61,12 @@ const question = computed(() => {
 
 /** A gait that does not divide the legs as they are now is asked for by its groups. @param {string} of */
 async function ask(of) {
-  const { asked, own } = JSON.parse(of);
+  const { asked: robot, own: ownGait } = JSON.parse(of);
   try {
-    return { of, known: await previewRobot(asked), gait: asked.gait };
+    return { of, preview: await previewRobot(robot), gait: robot.gait };
   } catch (error) {
-    if (!own || isSame(own, asked.gait) || !isLasting(/** @type {RequestError} */ (error))) throw error;
-    return { of, known: await previewRobot({ ...asked, gait: own }), gait: own };
+    if (!ownGait || isSame(ownGait, robot.gait) || !isLasting(/** @type {RequestError} */ (error))) throw error;
+    return { of, preview: await previewRobot({ ...robot, gait: ownGait }), gait: ownGait };
   }
 }
 
@@ -77,15 +77,15 @@ export function followBody() {
     effect(() => {
       const { answer } = reply.value;
       if (!answer) return;
-      told.value = answer;
+      previewAnswer.value = answer;
       if (body.peek() || answer.of !== question.peek()) return;
-      first.value = openBody(wholeRobot(form.peek().robot), form.peek().gait, answer.known);
+      first.value = openBody(wholeRobot(form.peek().robot), form.peek().gait, answer.preview);
       body.value = first.value;
     }),
     effect(() => {
       if (!isAwaited.value) return;
       if (!canUse.value) isAwaited.value = false;
-      else if (isTold.value) untracked(finish);
+      else if (isPreviewed.value) untracked(finish);
     }),
     bodyIsOpen.subscribe(clear),
   ];
@@ -100,7 +100,7 @@ function clear() {
   batch(() => {
     body.value = null;
     first.value = null;
-    told.value = null;
+    previewAnswer.value = null;
     past.value = [];
     typed.value = {};
     isAwaited.value = false;
@@ -113,8 +113,8 @@ function clear() {
 /** Why the robot cannot be opened; null if it can. */
 export const openingError = computed(() => (body.value ? null : reply.value.error && messageOf(reply.value.error)));
 
-/** Whether the server has told of the body as it is now. */
-export const isTold = computed(() => told.value?.of === question.value && !reply.value.error);
+/** Whether the server has previewed the body as it is now. */
+export const isPreviewed = computed(() => previewAnswer.value?.of === question.value && !reply.value.error);
 
 /** Whether the robot cannot be built as it is. */
 export const isRefused = computed(() => reply.value.error !== null);
@@ -123,19 +123,19 @@ export const isRefused = computed(() => reply.value.error !== null);
 export const objectionsAt = computed(() => {
   const { error } = /** @type {{ error: RequestError | null }} */ (reply.value);
   if (error) return [{ legs: error.legs, words: inOwnWords(error.message) }];
-  return told.value ? objectionsTo(told.value.known) : [];
+  return previewAnswer.value ? objectionsTo(previewAnswer.value.preview) : [];
 });
 
 /** What is impossible about a leg; "" if nothing is. @param {number} leg */
-export const impossibleAt = (leg) => (isRefused.value || !told.value
+export const impossibleAt = (leg) => (isRefused.value || !previewAnswer.value
   ? objectionsAt.value.find(({ legs }) => legs.includes(leg))?.words ?? ""
-  : unreachedBy(told.value.known, leg));
+  : unreachedBy(previewAnswer.value.preview, leg));
 
 /** What the editor would change besides the body. */
 export const consequences = computed(() => {
-  const [now, answer] = [body.value, told.value];
-  if (!now || !answer || !isTold.value) return [];
-  const turned_deg = answer.known.forward_deg - now.up_deg;
+  const [now, answer] = [body.value, previewAnswer.value];
+  if (!now || !answer || !isPreviewed.value) return [];
+  const turned_deg = answer.preview.forward_deg - now.up_deg;
   return consequencesOf({ turned_deg, beside: now.own, gait: answer.gait, before: form.value.gait });
 });
 
@@ -148,7 +148,7 @@ function change(next, key) {
   if (key !== lastChange) past.value = [...past.peek(), now];
   lastChange = key;
   // A gait that was found not to divide the legs is not asked for again.
-  const isReplaced = next.gait === now.gait && isTold.peek() && isSame(told.peek()?.gait, now.own);
+  const isReplaced = next.gait === now.gait && isPreviewed.peek() && isSame(previewAnswer.peek()?.gait, now.own);
   body.value = isReplaced ? { ...next, gait: next.own } : next;
 }
 
@@ -249,7 +249,7 @@ export const boxTorso = () => {
 
 /** Take groups with which it stands. */
 export function takeBetter() {
-  const [now, better] = [body.peek(), told.peek()?.known.better];
+  const [now, better] = [body.peek(), previewAnswer.peek()?.preview.better];
   if (!now || !better) return;
   const { gait } = /** @type {{ gait: any }} */ (better);
   change({ ...now, gait, own: gait }, "groups");
@@ -265,8 +265,8 @@ export function shownFields() {
   const { leg_fields, torso_fields } = served();
   if (part.value === "leg") return Object.entries(leg_fields);
   if (part.value === "all") return Object.entries(leg_fields).filter(([field]) => !OF_ONE_LEG.includes(field));
-  const others = body.value && isBox(body.value) ? ["torso_radius_m"] : ["torso_length_m", "torso_width_m"];
-  return Object.entries(torso_fields).filter(([field]) => !others.includes(field));
+  const otherFields = body.value && isBox(body.value) ? ["torso_radius_m"] : ["torso_length_m", "torso_width_m"];
+  return Object.entries(torso_fields).filter(([field]) => !otherFields.includes(field));
 }
 
 /** The values of a field: of the chosen leg, of all legs, or the torso's. @param {string} field */
@@ -288,12 +288,12 @@ const settingOf = (key) => /** @type {SettingOption} */ (settingFor(fieldOf(key)
 /** Where in the editor something is that was typed → why it is no valid number. */
 export const mistakes = computed(() => {
   /** @type {Record<string, string>} */
-  const found = {};
+  const errors = {};
   for (const [key, text] of Object.entries(typed.value)) {
     const { mistake } = parseSetting(text, settingOf(key));
-    if (mistake !== undefined) found[key] = mistake;
+    if (mistake !== undefined) errors[key] = mistake;
   }
-  return found;
+  return errors;
 });
 
 /** A field that is not valid, in words: "Leg 2, femur". @param {string} key */
@@ -341,8 +341,8 @@ export function setPart(field, value) {
 
 /** Take a number from a slider. @type {(field: string, value: number) => void} */
 export const slideTo = (field, value) => batch(() => {
-  const { [keyOf(field)]: _, ...others } = typed.peek();
-  typed.value = others;
+  const { [keyOf(field)]: _, ...otherTexts } = typed.peek();
+  typed.value = otherTexts;
   setPart(field, value);
 });
 
@@ -355,7 +355,7 @@ export const typeIn = (field, text) => batch(() => {
 
 // ---- the end
 
-/** Whether the body is used as soon as the server has told of it. */
+/** Whether the body is used as soon as the server has previewed it. */
 const isAwaited = signal(false);
 
 /** Whether the body can be used: it can be built, and nothing typed is no number. */
@@ -365,12 +365,12 @@ export const canUse = computed(() =>
 /** Close the editor; the form stays as it is. */
 export const cancel = () => (bodyIsOpen.value = false);
 
-/** Write the body into the form, once the server has told of it. */
+/** Write the body into the form, once the server has previewed it. */
 export const useBody = () => (isAwaited.value = canUse.value);
 
 /** Write it, and the gait where it is another one; a body that was not changed stays as the form has it. */
 function finish() {
-  const [now, answer] = [body.peek(), told.peek()];
+  const [now, answer] = [body.peek(), previewAnswer.peek()];
   if (!now || !answer) return;
   const isOther = now !== first.peek();
   const isOtherGait = !isSame(answer.gait, form.peek().gait);

@@ -1,7 +1,7 @@
 // Saving the body that is edited: under a name, as a robot that is stored and then chosen.
 import { batch, computed, signal } from "@preact/signals";
 import { robotOf } from "./body.js";
-import { body, cancel, canUse, isTold, told } from "./body-editor.js";
+import { body, cancel, canUse, isPreviewed, previewAnswer } from "./body-editor.js";
 import { setFields } from "../../js/form.js";
 import { toast } from "../../js/page.js";
 import { bodyIsOpen } from "./dialogs.js";
@@ -23,13 +23,13 @@ export const followSaving = () => bodyIsOpen.subscribe(() => batch(() => {
   unsaved.value = "";
 }));
 
-/** Whether it can be saved: it has a name, and the server has told of the body as it is. */
+/** Whether it can be saved: it has a name, and the server has previewed the body as it is. */
 export const canSave = computed(() =>
-  canUse.value && isTold.value && !isSaving.value && Boolean(bodyName.value?.trim()));
+  canUse.value && isPreviewed.value && !isSaving.value && Boolean(bodyName.value?.trim()));
 
 /** Store the body under its name, and choose it. */
 export async function saveBody() {
-  const [now, answer, name] = [body.peek(), told.peek(), bodyName.peek()?.trim()];
+  const [now, answer, name] = [body.peek(), previewAnswer.peek(), bodyName.peek()?.trim()];
   if (!canSave.peek() || !now || !answer || !name) return;
   isSaving.value = true;
   unsaved.value = "";

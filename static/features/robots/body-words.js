@@ -1,5 +1,4 @@
-// What is told of a body that is edited, in sentences: what is impossible about which legs, its reach, and what else
-// changes with it.
+// Sentences about a body that is edited: what is impossible about which legs, its reach, and what else changes.
 import { listed, sentence } from "../../js/format.js";
 import { objections } from "../../js/preview.js";
 import { isSame, partInWords } from "../../js/robots.js";
@@ -20,23 +19,23 @@ export function settingFor(field) {
 export const inOwnWords = (text) => sentence(inFormWords(text).replace(/\b[a-z]+(_[a-z]+)*_m\b/g, (field) =>
   settingFor(field)?.title.toLowerCase() ?? partInWords(field)[0]));
 
-/** What a leg cannot reach; "" if it reaches all. @type {(known: Preview, leg: number) => string} */
-export function unreachedBy(known, leg) {
-  const words = known.legs[leg - 1]?.out_of_reach;
+/** What a leg cannot reach; "" if it reaches all. @type {(preview: Preview, leg: number) => string} */
+export function unreachedBy(preview, leg) {
+  const words = preview.legs[leg - 1]?.out_of_reach;
   return words ? `${inOwnWords(words)}.` : "";
 }
 
-/** What speaks against a body that can be built. @param {Preview} known @returns {Objection[]} */
-export function objectionsTo(known) {
-  const [first, ...others] = known.legs.filter(({ out_of_reach }) => out_of_reach !== null).map(({ leg }) => leg);
-  const also = others.length ? ` So it is with leg${others.length > 1 ? "s" : ""} ${listed(others.map(String))}.` : "";
+/** What speaks against a body that can be built. @param {Preview} preview @returns {Objection[]} */
+export function objectionsTo(preview) {
+  const [first, ...more] = preview.legs.filter(({ out_of_reach }) => out_of_reach !== null).map(({ leg }) => leg);
+  const also = more.length ? ` So it is with leg${more.length > 1 ? "s" : ""} ${listed(more.map(String))}.` : "";
   return [
-    ...(first ? [{ legs: [first, ...others], words: unreachedBy(known, first) + also }] : []),
-    ...objections({ ...known, out_of_reach: null }).map((words) => ({ legs: [], words })),
+    ...(first ? [{ legs: [first, ...more], words: unreachedBy(preview, first) + also }] : []),
+    ...objections({ ...preview, out_of_reach: null }).map((words) => ({ legs: [], words })),
   ];
 }
 
-/** The grids that its feet reach; "" if they reach none. @param {Preview} known */
+/** The grids that its feet reach; "" if they reach none. @param {Preview} preview */
 export function reachInWords({ largest_side_m, safe_side_m }) {
   if (largest_side_m === null) return "";
   const largest = `Its feet reach a foot grid of at most ${largest_side_m}\u00a0m`;
@@ -54,5 +53,5 @@ export function consequencesOf({ turned_deg, beside: { right_leg, left_leg }, ga
   return [
     turned !== 0 && `Ahead is now ${Math.abs(turned)}° to the ${side}: between legs ${right_leg} and ${left_leg}.`,
     !isSame(gait, before) && `Gait: ${gaitTitle(gait)}, in place of ${gaitTitle(before)}.`,
-  ].filter((one) => typeof one === "string");
+  ].filter((text) => typeof text === "string");
 }

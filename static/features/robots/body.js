@@ -50,24 +50,24 @@ function turned([x, y], angle_deg) {
  * The body of a robot.
  * @param {RobotConfig} robot as the form has it
  * @param {GaitConfig} gait
- * @param {Preview} known
+ * @param {Preview} preview
  * @returns {Body}
  */
-export function openBody(robot, gait, known) {
-  const given = typeof robot === "string" ? { preset: robot } : robot;
-  const { legs } = /** @type {{ legs?: object[] }} */ (given);
+export function openBody(robot, gait, preview) {
+  const document = typeof robot === "string" ? { preset: robot } : robot;
+  const { legs } = /** @type {{ legs?: object[] }} */ (document);
   return {
-    base: without(given, LEGS_OF_RING),
-    shared: known.built,
-    legs: known.legs.map(({ built }, number) => ({
+    base: without(document, LEGS_OF_RING),
+    shared: preview.built,
+    legs: preview.legs.map(({ built }, number) => ({
       parts: Object.fromEntries(Object.entries(built)
-        .filter(([part, value]) => PLACE.includes(part) || value !== (known.built[part] ?? 0))
+        .filter(([part, value]) => PLACE.includes(part) || value !== (preview.built[part] ?? 0))
         .map(([part, value]) => [part, rounded(value)])),
       given: legs?.[number] ?? null,
     })),
-    up_deg: known.forward_deg,
+    up_deg: preview.forward_deg,
     gait,
-    own: /** @type {GaitParts} */ (known.gait),
+    own: /** @type {GaitParts} */ (preview.gait),
   };
 }
 
@@ -131,8 +131,8 @@ const EXTENT_STEP_M = 0.05;
 /** @type {(body: Body, leg: number, changes: Record<string, number>) => Body} */
 const withParts = (body, leg, changes) => ({
   ...body,
-  legs: body.legs.map((one, number) =>
-    (number === leg - 1 ? { parts: { ...one.parts, ...changes }, given: null } : one)),
+  legs: body.legs.map((bodyLeg, number) =>
+    (number === leg - 1 ? { parts: { ...bodyLeg.parts, ...changes }, given: null } : bodyLeg)),
 });
 
 /**
@@ -171,21 +171,23 @@ function inRobotFrame(body, { x_m, y_m, yaw_deg, ...rest }) {
  * @type {(body: Body, leg: number, changes: Record<string, number>, mirror: number | null) => Body}
  */
 export function changeLeg(body, leg, changes, mirror) {
-  const kept = mirror === leg ? without(changes, ["x_m", "yaw_deg"]) : changes;
-  if (!Object.keys(kept).length) return body;
+  const legChanges = mirror === leg ? without(changes, ["x_m", "yaw_deg"]) : changes;
+  if (!Object.keys(legChanges).length) return body;
   const { x_m, y_m, yaw_deg } = partsOf(body, leg);
-  const now = { x_m, y_m, yaw_deg, ...kept };
-  const own = withParts(body, leg, inRobotFrame(body, now));
-  if (mirror === null || mirror === leg) return own;
-  return withParts(own, mirror, inRobotFrame(body, mirrored(now)));
+  const now = { x_m, y_m, yaw_deg, ...legChanges };
+  const changed = withParts(body, leg, inRobotFrame(body, now));
+  if (mirror === null || mirror === leg) return changed;
+  return withParts(changed, mirror, inRobotFrame(body, mirrored(now)));
 }
 
 /** Give all legs the same number. @type {(body: Body, part: string, value: number) => Body} */
 export function changeAll(body, part, value) {
-  if (PLACE.includes(part)) return numbersOf(body).reduce((one, leg) => withParts(one, leg, { [part]: value }), body);
-  const legs = body.legs.map((one) => {
-    const hasOwn = part in one.parts;
-    return hasOwn ? { parts: without(one.parts, [part]), given: null } : one;
+  if (PLACE.includes(part)) {
+    return numbersOf(body).reduce((changed, leg) => withParts(changed, leg, { [part]: value }), body);
+  }
+  const legs = body.legs.map((bodyLeg) => {
+    const hasOwn = part in bodyLeg.parts;
+    return hasOwn ? { parts: without(bodyLeg.parts, [part]), given: null } : bodyLeg;
   });
   return { ...body, legs, base: { ...body.base, [part]: value } };
 }
@@ -228,19 +230,19 @@ function renumbered(body, before) {
   const legs = order.map((leg) => body.legs[leg - 1]);
   const byAzimuth = { ...body, legs };
   const onLeft = numbersOf(byAzimuth).find((leg) => azimuthOf(byAzimuth, leg) > 0) ?? 2;
-  const beside = { right_leg: right || 1, left_leg: left || onLeft };
+  const startLegs = { right_leg: right || 1, left_leg: left || onLeft };
   const groups = /** @type {number[][]} */ (body.own.groups)
     .map((group) => group.map(numberOf).filter(Boolean).toSorted((a, b) => a - b)).filter((group) => group.length);
-  const own = /** @type {GaitParts} */ ({ ...beside, groups });
-  return { ...byAzimuth, own, gait: gaitAfter(body.gait, before, beside) ?? own };
+  const ownGait = /** @type {GaitParts} */ ({ ...startLegs, groups });
+  return { ...byAzimuth, own: ownGait, gait: gaitAfter(body.gait, before, startLegs) ?? ownGait };
 }
 
 /** @type {(gait: GaitConfig, before: GaitParts, beside: GaitBeside) => GaitConfig | null} */
-function gaitAfter(gait, before, beside) {
+function gaitAfter(gait, before, startLegs) {
   if (typeof gait === "string") {
-    return beside.right_leg === before.right_leg && beside.left_leg === before.left_leg ? gait : null;
+    return startLegs.right_leg === before.right_leg && startLegs.left_leg === before.left_leg ? gait : null;
   }
-  return Array.isArray(gait.groups) || gait.pairs ? null : { ...gait, ...beside };
+  return Array.isArray(gait.groups) || gait.pairs ? null : { ...gait, ...startLegs };
 }
 
 /** @type {(groups: unknown, change: (group: number[]) => number[]) => any} */
@@ -252,11 +254,11 @@ const eachGroup = (groups, change) => /** @type {number[][]} */ (groups).map(cha
  */
 export function removeLeg(body, leg, mirror) {
   const gone = [leg, mirror];
-  const kept = numbersOf(body).filter((one) => !gone.includes(one));
-  const numberOf = (/** @type {number} */ one) => kept.indexOf(one) + 1;
+  const remaining = numbersOf(body).filter((number) => !gone.includes(number));
+  const numberOf = (/** @type {number} */ number) => remaining.indexOf(number) + 1;
   const groups = eachGroup(body.own.groups, (group) => group.map(numberOf).filter(Boolean));
   const [right_leg, left_leg] = [body.own.right_leg, body.own.left_leg].map(numberOf);
-  const legs = kept.map((one) => body.legs[one - 1]);
+  const legs = remaining.map((number) => body.legs[number - 1]);
   return renumbered({ ...body, legs, own: { ...body.own, right_leg, left_leg, groups } }, body.own);
 }
 
@@ -284,16 +286,16 @@ export function addLeg(body, isMirrored, most) {
     .map((parts) => ({ parts: inRobotFrame(body, parts), given: null }));
   const numbers = added.map((_, number) => body.legs.length + number + 1);
   const groups = [.../** @type {number[][]} */ (body.own.groups), numbers];
-  const made = renumbered({
+  const enlarged = renumbered({
     ...body, legs: [...body.legs, ...added], own: /** @type {GaitParts} */ ({ ...body.own, groups }),
   }, body.own);
-  return { body: made, leg: made.legs.indexOf(added[0]) + 1 };
+  return { body: enlarged, leg: enlarged.legs.indexOf(added[0]) + 1 };
 }
 
 /** A leg in the middle between two. @type {(body: Body, leg: number, next: number) => Record<string, number>} */
 function between(body, leg, next) {
-  const [one, other] = [partsOf(body, leg), partsOf(body, next)];
-  const mean = (/** @type {string} */ part) => rounded((one[part] + other[part]) / 2);
-  const yaw_deg = wrapped(one.yaw_deg + wrapped(other.yaw_deg - one.yaw_deg) / 2);
+  const [leftParts, rightParts] = [partsOf(body, leg), partsOf(body, next)];
+  const mean = (/** @type {string} */ part) => rounded((leftParts[part] + rightParts[part]) / 2);
+  const yaw_deg = wrapped(leftParts.yaw_deg + wrapped(rightParts.yaw_deg - leftParts.yaw_deg) / 2);
   return { x_m: mean("x_m"), y_m: mean("y_m"), yaw_deg, foot_out_m: mean("foot_out_m") };
 }

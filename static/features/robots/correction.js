@@ -35,10 +35,10 @@ export async function correct(id) {
   wrongChoice.value = "";
   if (id === null) return;
   try {
-    const found = /** @type {WholeRobot} */ (await call("GET", `robots/${encodeURIComponent(id)}`));
+    const robot = /** @type {WholeRobot} */ (await call("GET", `robots/${encodeURIComponent(id)}`));
     if (corrected.peek() !== id) return;
-    whole.value = found;
-    fields.value = fieldsOf(found);
+    whole.value = robot;
+    fields.value = fieldsOf(robot);
   } catch (error) {
     wrongChoice.value = messageOf(/** @type {Error} */ (error));
   }
@@ -50,7 +50,7 @@ function fieldsOf({ choices, groups, found }) {
   return {
     forward: String(forward ?? ""), keyframe: keyframe ?? "",
     // In the order of the file.
-    feet: found?.feet.filter((one) => (feet ?? found.legs.map(({ foot }) => foot)).includes(one)) ?? [],
+    feet: found?.feet.filter((name) => (feet ?? found.legs.map(({ foot }) => foot)).includes(name)) ?? [],
     angles: Object.entries(home_rad ?? {}).map(([joint, angle]) => `${joint}=${angle}`).join(", "),
     groups: groups.map((legs) => legs.join("+")).join(", "),
     torque: String(servo_torque_nm ?? ""), gain: String(servo_kp ?? ""),
@@ -73,11 +73,11 @@ function numberIn(name, text) {
 
 /** @param {string} text */
 function anglesIn(text) {
-  const parts = text.split(/[,;]/).map((one) => one.trim()).filter(Boolean);
-  return Object.fromEntries(parts.map((one) => {
-    const [joint, angle, ...more] = one.split("=").map((part) => part.trim());
+  const parts = text.split(/[,;]/).map((text_) => text_.trim()).filter(Boolean);
+  return Object.fromEntries(parts.map((assignment) => {
+    const [joint, angle, ...more] = assignment.split("=").map((word) => word.trim());
     if (!joint || angle === undefined || more.length) {
-      throw new Error(`An angle is written as joint=radians, not “${one}”.`);
+      throw new Error(`An angle is written as joint=radians, not “${assignment}”.`);
     }
     return [joint, numberIn(`The angle of ${joint}`, angle)];
   }));
@@ -90,12 +90,12 @@ const groupsIn = (text) => text.split(/[,;]/).map((group) =>
 /** What is decided. @type {(now: Fields, before: WholeRobot) => RobotChoices} */
 function choicesOf(now, before) {
   const was = fieldsOf(before);
-  const kept = /** @type {RobotChoices} */ (before.choices ?? {});
+  const keptChoices = /** @type {RobotChoices} */ (before.choices ?? {});
   const isOther = (/** @type {keyof Fields} */ name) => String(now[name]) !== String(was[name]);
   const forward = DIRECTIONS.includes(now.forward) ? now.forward : now.forward && numberIn("Forward", now.forward);
   const angles = anglesIn(now.angles);
-  const given = {
-    ...kept,
+  const choices = {
+    ...keptChoices,
     forward: forward === "" ? null : forward,
     keyframe: now.keyframe || null,
     home_rad: Object.keys(angles).length ? angles : null,
@@ -105,7 +105,8 @@ function choicesOf(now, before) {
     // Legs are numbered from the front right one: with another forward their numbers are others'.
     ...(isOther("forward") ? { gait: null } : {}),
   };
-  return /** @type {RobotChoices} */ (Object.fromEntries(Object.entries(given).filter(([, value]) => value !== null)));
+  return /** @type {RobotChoices} */ (Object.fromEntries(
+    Object.entries(choices).filter(([, value]) => value !== null)));
 }
 
 /**

@@ -69,10 +69,10 @@ export const deleteRobot = (id) => change(id, async () => {
 let keys = 0;
 /** @type {(key: number, changes: Partial<TakenFile>) => void} */
 const setTaken = (key, changes) =>
-  (taken.value = taken.value.map((one) => (one.key === key ? { ...one, ...changes } : one)));
+  (taken.value = taken.value.map((file) => (file.key === key ? { ...file, ...changes } : file)));
 
 /** @param {number} key */
-export const dismissFile = (key) => (taken.value = taken.value.filter((one) => one.key !== key));
+export const dismissFile = (key) => (taken.value = taken.value.filter((file) => file.key !== key));
 
 const MIB = 2 ** 20;
 
@@ -107,10 +107,10 @@ function send(file) {
 function distinct(name) {
   const [, most] = served().limits.name;
   const short = name.slice(0, (most ?? Infinity) - 4) || "Robot";
-  const used = served().robots.flatMap((one) => [one.name, one.title]).map((one) => one.toLowerCase());
+  const used = served().robots.flatMap((robot) => [robot.name, robot.title]).map((robot) => robot.toLowerCase());
   for (let number = 1; ; number += 1) {
-    const found = number === 1 ? short : `${short} ${number}`;
-    if (!used.includes(found.toLowerCase())) return found;
+    const numbered = number === 1 ? short : `${short} ${number}`;
+    if (!used.includes(numbered.toLowerCase())) return numbered;
   }
 }
 

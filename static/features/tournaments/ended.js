@@ -7,7 +7,7 @@ import { copy } from "../../js/page.js";
 import { largest } from "../../js/scale.js";
 import { agentOf } from "../../js/settings.js";
 import { fileOf } from "./api.js";
-import { entries, id, isWhole, known, nameOfNumber, shownStandings } from "./tournament.js";
+import { entries, id, isWhole, shownTournament, nameOfNumber, shownStandings } from "./tournament.js";
 import { failuresInWords, intervalInWords, shortName } from "./words.js";
 
 /** @import { Judgement, RankedEntry } from "../../js/types.js" */
@@ -17,7 +17,7 @@ const LEAST_M = 0.1;
 const VERIFY = `hexapods verify tournament-${id}.json`;
 
 export function Ended() {
-  const { secret, draws } = known();
+  const { secret, draws } = shownTournament();
   if (secret === null || draws === null) return null;
   return html`
     <section class="panel repeat" aria-labelledby="repeat-title">
@@ -62,7 +62,8 @@ const judgementsOf = (number) => entries.value.get(number)?.judgements ?? [];
 /** The entries that are ranked, each with a dot for each draw, on one axis. */
 function Strips() {
   const standings = shownStandings.value;
-  const all = known().standings.flatMap(({ number }) => judgementsOf(number).map(({ distance_m }) => distance_m));
+  const all = shownTournament().standings
+    .flatMap(({ number }) => judgementsOf(number).map(({ distance_m }) => distance_m));
   const axis = { low: Math.min(0, ...all), high: HEADROOM * largest(all, LEAST_M) };
   return html`
     <ul class="draw-strips">
@@ -70,8 +71,9 @@ function Strips() {
         <${Strip} key=${standing.number} standing=${standing} axis=${axis} hasNumbers=${n === standings.length - 1} />
       `)}
     </ul>
-    ${standings.length < known().standings.length && html`
-      <button class="secondary" onClick=${() => (isWhole.value = true)}>Show all ${known().standings.length}</button>
+    ${standings.length < shownTournament().standings.length && html`
+      <button class="secondary" onClick=${() => (isWhole.value = true)}>
+        Show all ${shownTournament().standings.length}</button>
     `}
   `;
 }
@@ -96,7 +98,7 @@ function Strip({ standing, axis, hasNumbers }) {
 }
 
 function DistanceTable() {
-  const { standings, draws } = known();
+  const { standings, draws } = shownTournament();
   return html`
     <div class="scroller" tabindex="0" role="region" aria-label="Distances on each draw, in metres">
       <table class="draws-table by-draw">

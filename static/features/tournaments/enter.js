@@ -12,17 +12,17 @@ import {
   textOf,
 } from "./draft.js";
 import { loadTables, tables } from "./tables.js";
-import { busy, enter, failures, known, refused } from "./tournament.js";
+import { busy, enter, failures, shownTournament, refused } from "./tournament.js";
 import { choicesInWords, entriesLeft } from "./words.js";
 
 /** @import { Changed, Run, SettingOption } from "../../js/types.js" */
 
 export function Enter() {
-  const { own, rules, room, entries_per_hour, state } = known();
+  const { own, rules, room, entries_per_hour, state } = shownTournament();
   // Who has used up the entries of this hour goes on with the form.
   const isEntrant = own.may_enter || own.left !== null;
   useEffect(() => {
-    if (rules.tables && isEntrant) loadTables(known());
+    if (rules.tables && isEntrant) loadTables(shownTournament());
   }, [isEntrant]);
   if (state !== "open") return null;
   return html`
@@ -43,7 +43,7 @@ export function Enter() {
 const KEPT = "At the end everybody sees what you entered, and without your name once the room is gone.";
 
 function Fields() {
-  const { rules, own, is_operator } = known();
+  const { rules, own, is_operator } = shownTournament();
   const { body, mistakes } = requestOf(draft.value, rules, tables.value ?? []);
   const canEnter = body !== null && own.may_enter && !busy.value.enter;
   const send = (/** @type {Event} */ event) => {
@@ -150,7 +150,7 @@ const AgentField = () => html`
 `;
 
 function StepsField() {
-  const { rules } = known();
+  const { rules } = shownTournament();
   const { steps } = draft.value;
   return html`
     <${NumberRow} id="entry-steps" label="Steps of practice" limits=${stepLimits(rules)} isWhole=${true}
@@ -166,8 +166,8 @@ const RobotField = () => html`
     <label for="entry-robot">Creature</label>
     <select id="entry-robot" ...${refusalAttributes("robot")}
       onChange=${(/** @type {Changed} */ { target }) => change({ robot: target.value })}>
-      <option value="" selected=${draft.value.robot === ""}>${robotTitle(known().rules.robot)}</option>
-      ${known().rules.robots.map((robot, number) => html`
+      <option value="" selected=${draft.value.robot === ""}>${robotTitle(shownTournament().rules.robot)}</option>
+      ${shownTournament().rules.robots.map((robot, number) => html`
         <option key=${number} value=${number} selected=${draft.value.robot === String(number)}>
           ${robotTitle(robot)}, in the gait that suits it
         </option>
@@ -256,8 +256,9 @@ const Choice = ({ id, setting, text, onText }) => html`
   <select id=${id} aria-describedby=${`about-${id}`}
     onChange=${(/** @type {Changed} */ { target }) => onText(target.value)}>
     ${setting.default === null && html`<option value="" selected=${text === ""}>by default</option>`}
-    ${setting.choices.map((one) => html`
-      <option key=${one} value=${one} selected=${one === text}>${sentence(choiceTitle(setting, String(one)))}</option>
+    ${setting.choices.map((choice) => html`
+      <option key=${choice} value=${choice} selected=${choice === text}>
+        ${sentence(choiceTitle(setting, String(choice)))}</option>
     `)}
   </select>
 `;

@@ -94,7 +94,7 @@ export const changeNumber = (name, text) => change({ numbers: { ...draft.peek().
 /** A list with a name, or without it, in the order of all names. */
 /** @type {(list: string[], name: string, all: string[]) => string[]} */
 export const toggled = (list, name, all) =>
-  all.filter((one) => (one === name ? !list.includes(one) : list.includes(one)));
+  all.filter((item) => (item === name ? !list.includes(item) : list.includes(item)));
 
 /** The numbers of a tournament, with their titles, defaults and limits. */
 export const numberFields = () => Object.entries(served().tournament_fields);

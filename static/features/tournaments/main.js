@@ -9,7 +9,7 @@ import { Enter } from "./enter.js";
 import { Operator } from "./operator.js";
 import { Ranking } from "./ranking.js";
 import { stateInWords } from "./states.js";
-import { announcement, follow, isProjector, known, refusal, tournament } from "./tournament.js";
+import { announcement, follow, isProjector, shownTournament, refusal, tournament } from "./tournament.js";
 import { rulesInWords, walkInWords } from "./words.js";
 
 function Page() {
@@ -38,7 +38,7 @@ const Closed = () => html`
 `;
 
 function Whole() {
-  const { state } = known();
+  const { state } = shownTournament();
   return html`
     <${Header} />
     ${isAway.value && html`
@@ -61,7 +61,7 @@ function Whole() {
 }
 
 function Header() {
-  const { room } = known();
+  const { room } = shownTournament();
   return html`
     <header class="tournament-header">
       <a class="brand" href="../" title="Go to the dashboard">
@@ -79,7 +79,7 @@ function Header() {
 
 /** Title, state and rules. */
 function About() {
-  const { title, state, rules, commitment } = known();
+  const { title, state, rules, commitment } = shownTournament();
   return html`
     <section class="about" aria-labelledby="tournament-title">
       <h1 id="tournament-title">${title}</h1>

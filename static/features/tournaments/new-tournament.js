@@ -111,10 +111,10 @@ const Choices = ({ name, legend, choices }) => html`
   <fieldset>
     <legend>${legend}</legend>
     <div class="panel-boxes">
-      ${choices.map(([one, title]) => html`
-        <label class="check" key=${one}>
-          <input type="checkbox" checked=${draft.value[name].includes(one)}
-            onChange=${() => change({ [name]: toggled(draft.peek()[name], one, choices.map(([other]) => other)) })} />
+      ${choices.map(([value, title]) => html`
+        <label class="check" key=${value}>
+          <input type="checkbox" checked=${draft.value[name].includes(value)}
+            onChange=${() => change({ [name]: toggled(draft.peek()[name], value, choices.map(([other]) => other)) })} />
           ${title}
         </label>
       `)}
@@ -127,12 +127,12 @@ const Choices = ({ name, legend, choices }) => html`
 `;
 
 function Creatures() {
-  const own = presetOf(/** @type {any} */ (walk.value.robot));
-  const others = robotChoices([]).filter(([name]) => name !== own);
+  const preset = presetOf(/** @type {any} */ (walk.value.robot));
+  const otherRobots = robotChoices([]).filter(([name]) => name !== preset);
   return html`
     <details>
       <summary>Other creatures that may enter <span class="dim">${draft.value.robots.length || "none"}</span></summary>
-      <${Choices} name="robots" legend="Creatures, each in the gait that suits it" choices=${others} />
+      <${Choices} name="robots" legend="Creatures, each in the gait that suits it" choices=${otherRobots} />
     </details>
   `;
 }

@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import { Dialog, html, Icon } from "../../js/components/elements.js";
 import { shortAddress } from "../../js/format.js";
 import { copy } from "../../js/page.js";
-import { busy, end, failures, id, known, remove, unranked } from "./tournament.js";
+import { busy, end, failures, id, shownTournament, remove, unranked } from "./tournament.js";
 
 /** @import { Changed } from "../../js/types.js" */
 
@@ -12,7 +12,7 @@ const deleteIsOpen = signal(false);
 const isWaitingDropped = signal(false);
 
 export function Operator() {
-  const { state, may_end, is_operator } = known();
+  const { state, may_end, is_operator } = shownTournament();
   if (!is_operator) return null;
   return html`
     <section class="panel operator" aria-labelledby="operator-title">
@@ -34,7 +34,7 @@ export function Operator() {
 
 /** QR code and link. */
 function Way() {
-  const { address, qr_code } = known();
+  const { address, qr_code } = shownTournament();
   return html`
     <div class="way">
       ${qr_code && html`<img src=${qr_code} alt=${`QR code of ${address}`} />`}

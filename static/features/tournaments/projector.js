@@ -4,14 +4,14 @@ import { shortAddress } from "../../js/format.js";
 import { isAway } from "../../js/store.js";
 import { Table } from "./ranking.js";
 import { stateInWords } from "./states.js";
-import { entries, known, unranked } from "./tournament.js";
+import { entries, shownTournament, unranked } from "./tournament.js";
 import { entriesInWords, rulesInWords, shortened } from "./words.js";
 
 /** Rows for which the screen has room, the references among them. */
 const MOST = 10;
 
 export function Projector() {
-  const { title, state, rules, standings, qr_code, address } = known();
+  const { title, state, rules, standings, qr_code, address } = shownTournament();
   const isReference = (/** @type {number} */ number) => entries.value.get(number)?.is_reference === true;
   const shown = shortened(standings, isReference, MOST);
   return html`
@@ -46,11 +46,11 @@ export function Projector() {
   `;
 }
 
-/** @param {number} others that are not on the screen */
-function countsInWords(others) {
+/** @param {number} count that are not on the screen */
+function countsInWords(count) {
   const judging = unranked.value.length;
   return [
-    others > 0 ? `${others} more in the ranking` : "",
+    count > 0 ? `${count} more in the ranking` : "",
     judging > 0 ? `${entriesInWords(judging)} being judged` : "",
   ].filter(Boolean).join(" · ");
 }

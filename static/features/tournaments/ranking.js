@@ -5,7 +5,9 @@ import { html, ProgressBar } from "../../js/components/elements.js";
 import { metres } from "../../js/format.js";
 import { percent, shareOf, ticks } from "../../js/scale.js";
 import { agentOf } from "../../js/settings.js";
-import { entered, entries, isWhole, known, nameOfNumber, shownStandings, unranked, withdrawn } from "./tournament.js";
+import {
+  entered, entries, isWhole, nameOfNumber, shownStandings, shownTournament, unranked, withdrawn,
+} from "./tournament.js";
 import {
   axisOf, entryInWords, failuresInWords, intervalInWords, nameOf, progressInWords, notSeparable, rankInWords,
   spokenRank,
@@ -19,7 +21,7 @@ import {
 const LINE_AGENT = "greedy";
 
 export function Ranking() {
-  const { standings, state } = known();
+  const { standings, state } = shownTournament();
   const shown = shownStandings.value;
   const isEmpty = standings.length === 0;
   return html`
@@ -52,8 +54,9 @@ export function Ranking() {
  * @param {boolean} [props.isShort] without what cannot be told apart, for a projector
  */
 export function Table({ standings, isShort = false }) {
-  const axis = axisOf(known().standings);
-  const line_m = known().standings.find(({ number }) => agentOfReference(number) === LINE_AGENT)?.iqm_m ?? null;
+  const axis = axisOf(shownTournament().standings);
+  const reference = shownTournament().standings.find(({ number }) => agentOfReference(number) === LINE_AGENT);
+  const line_m = reference?.iqm_m ?? null;
   return html`
     <table class="ranking" role="table" aria-label="Ranking">
       <thead role="rowgroup">
@@ -121,7 +124,7 @@ const classOf = ({ is_own, is_reference }, isShort = false) =>
 /** @param {{ entry: TournamentEntry, isShort?: boolean }} props */
 function Who({ entry, isShort = false }) {
   const { is_own, is_reference } = entry;
-  const what = entry.entry && !isShort ? entryInWords(entry.entry, known().rules) : "";
+  const what = entry.entry && !isShort ? entryInWords(entry.entry, shownTournament().rules) : "";
   const words = is_reference ? "reference" : what;
   return html`
     <span class="name" title=${nameOf(entry)}>${nameOf(entry)}</span>
@@ -132,11 +135,11 @@ function Who({ entry, isShort = false }) {
 
 /** @param {{ standing: RankedEntry }} props */
 function Remarks({ standing }) {
-  const failed = failuresInWords(standing, known().rules.draws);
-  const others = notSeparable(standing, nameOfNumber);
+  const failed = failuresInWords(standing, shownTournament().rules.draws);
+  const names = notSeparable(standing, nameOfNumber);
   return html`
-    ${others
-      ? html`<span><span class="repeated">not separable from </span>${others}</span>`
+    ${names
+      ? html`<span><span class="repeated">not separable from </span>${names}</span>`
       : html`<span class="dim">separable from all</span>`}
     ${failed && html`<span class="failed">${failed} draws</span>`}
   `;

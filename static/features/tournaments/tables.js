@@ -12,8 +12,8 @@ export const tables = signal(null);
 /** @param {Tournament} of */
 export async function loadTables({ room, is_operator, rules }) {
   try {
-    const found = is_operator || room === null ? await finishedTrainings() : await runsIn(room);
-    tables.value = found.filter((run) => fits(run, rules));
+    const trainings = is_operator || room === null ? await finishedTrainings() : await runsIn(room);
+    tables.value = trainings.filter((run) => fits(run, rules));
   } catch {
     // The list is a convenience; without it one enters with an agent.
     tables.value = [];
@@ -27,6 +27,6 @@ async function runsIn(code) {
   const { me } = await call("GET", `rooms/${encodeURIComponent(code)}`);
   /** @type {{ run_id: string }[]} */
   const runs = me?.runs ?? [];
-  const found = await Promise.allSettled(runs.map(({ run_id }) => getAnyRun(run_id)));
-  return found.flatMap((one) => (one.status === "fulfilled" ? [one.value] : [])).reverse();
+  const results = await Promise.allSettled(runs.map(({ run_id }) => getAnyRun(run_id)));
+  return results.flatMap((result) => (result.status === "fulfilled" ? [result.value] : [])).reverse();
 }

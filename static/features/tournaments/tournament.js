@@ -20,7 +20,7 @@ export const isProjector = flags.includes("projector");
 /** Null until the server has answered. @type {Signal<Tournament | null>} */
 export const tournament = signal(null);
 /** The tournament, for components: they are drawn once it is known. */
-export const known = () => /** @type {Tournament} */ (tournament.value);
+export const shownTournament = () => /** @type {Tournament} */ (tournament.value);
 /** Why there is no tournament to be seen; null while there may be one. @type {Signal<RequestError | null>} */
 export const refusal = signal(null);
 /** What has happened to own entries, for screen readers. */
@@ -33,7 +33,7 @@ export const { busy, failures, refused } = requests;
 const { perform } = requests;
 
 /** The entries by their numbers. @type {ReadonlySignal<Map<number, TournamentEntry>>} */
-export const entries = computed(() => new Map((tournament.value?.entries ?? []).map((one) => [one.number, one])));
+export const entries = computed(() => new Map((tournament.value?.entries ?? []).map((entry) => [entry.number, entry])));
 
 /** The name of an entry. @param {number} number */
 export const nameOfNumber = (number) => {
@@ -97,7 +97,7 @@ export async function refresh() {
 function announceJudged(before, now) {
   const isOpen = new Set(before?.entries.filter(({ state }) => state !== "judged").map(({ number }) => number));
   const news = now.entries.filter(({ is_own, number, state }) => is_own && state === "judged" && isOpen.has(number));
-  if (news.length) announcement.value = news.map((one) => `${nameOf(one)} has been judged.`).join(" ");
+  if (news.length) announcement.value = news.map((number) => `${nameOf(number)} has been judged.`).join(" ");
 }
 
 // The pages of a class hear of each draw within the same moment.
@@ -153,7 +153,7 @@ export const enter = (body) => perform("enter", async () => {
   const before = entries.peek();
   const { number, of, entry } = await api.enter(id, body);
   await refresh();
-  const what = entry ? entryInWords(entry, known().rules) : "An entry";
+  const what = entry ? entryInWords(entry, shownTournament().rules) : "An entry";
   batch(() => {
     entered.value = number;
     announcement.value = before.has(number)

@@ -38,7 +38,9 @@ function List() {
     ${all === null && !failures.value.list && html`<p role="status">Loading the tournaments…</p>`}
     ${all?.length === 0 && html`<p>There is none yet.</p>`}
     ${all !== null && all.length > 0 && html`
-      <ul class="tournament-list">${all.map((one) => html`<${Row} key=${one.id} tournament=${one} />`)}</ul>
+      <ul class="tournament-list">
+        ${all.map((tournament) => html`<${Row} key=${tournament.id} tournament=${tournament} />`)}
+      </ul>
     `}
     ${isOperator.value && html`<button class="primary" onClick=${showForm}>Open a tournament…</button>`}
   `;

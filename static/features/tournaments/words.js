@@ -53,11 +53,11 @@ export const nameOf = ({ number, name, is_reference, entry }) =>
  * @param {Tournament["rules"]} rules
  */
 export function entryInWords({ agent, settings = {}, steps, observation, robot, table }, rules) {
-  const known = agentOf(agent);
-  const own = Object.entries(settings).filter(([name, value]) =>
-    name in known.settings && value !== known.settings[name].default);
+  const chosenAgent = agentOf(agent);
+  const changed = Object.entries(settings).filter(([name, value]) =>
+    name in chosenAgent.settings && value !== chosenAgent.settings[name].default);
   return [
-    known.title, ...own.map(([name, value]) => settingInWords(known.settings[name], value)),
+    chosenAgent.title, ...changed.map(([name, value]) => settingInWords(chosenAgent.settings[name], value)),
     ...(table ? ["a trained table"] : []),
     ...(steps !== null && steps !== undefined && steps < rules.steps ? [count(steps, "step")] : []),
     ...(observation && observation !== "measured" ? [observationTitle(observation)] : []),
@@ -126,7 +126,7 @@ export function shortened(standings, isKept, most) {
   if (standings.length <= most) return standings;
   const room = Math.max(0, most - standings.filter(({ number }) => isKept(number)).length);
   const best = standings.filter(({ number }) => !isKept(number)).slice(0, room);
-  return standings.filter((one) => isKept(one.number) || best.includes(one));
+  return standings.filter((standing) => isKept(standing.number) || best.includes(standing));
 }
 
 // ---- what may be entered

@@ -23,9 +23,9 @@ const agentOfCard = (card) => String(card.state?.form?.agent ?? "q-learning");
 
 /** The settings that a card can open: of the practice, of its agent, and those with names. @param {LessonCard} card */
 function openable(card) {
-  const own = agentOf(agentOfCard(card)).settings;
+  const agentSettings = agentOf(agentOfCard(card)).settings;
   const served = options.value?.settings ?? {};
-  return [...NAMED, ...Object.keys(own), ...COMMON.filter((name) => name in served)]
+  return [...NAMED, ...Object.keys(agentSettings), ...COMMON.filter((name) => name in served)]
     .filter((name) => !NEVER.includes(name));
 }
 
@@ -45,8 +45,8 @@ function namesOf(name) {
 export function MayEditor({ card }) {
   const may = card.may ?? {};
   const change = (/** @type {string} */ name, /** @type {Partial<Bounds> | null} */ bounds) => {
-    const { [name]: _, ...others } = may;
-    changeCard({ may: bounds === null ? others : { ...others, [name]: bounds } });
+    const { [name]: _, ...otherBounds } = may;
+    changeCard({ may: bounds === null ? otherBounds : { ...otherBounds, [name]: bounds } });
   };
   const left = openable(card).filter((name) => !(name in may));
   const open = (/** @type {any} */ { target: { value } }) => value && change(value, firstBounds(value, card));
@@ -67,7 +67,7 @@ export function MayEditor({ card }) {
 
 /** The bounds with which a setting is opened: all that is valid. @type {(name: string, card: LessonCard) => any} */
 function firstBounds(name, card) {
-  if (NAMED.includes(name)) return { choices: namesOf(name).slice(0, 2).map((one) => one.name) };
+  if (NAMED.includes(name)) return { choices: namesOf(name).slice(0, 2).map((item) => item.name) };
   const setting = settingOf(name, card);
   if (!setting?.is_number) return {};
   const { minimum, maximum } = setting;
@@ -78,9 +78,9 @@ function firstBounds(name, card) {
 function One({ name, bounds, card, onBounds }) {
   const setting = settingOf(name, card);
   const limit = (/** @type {string} */ side) => (/** @type {any} */ { target }) => {
-    const { [side]: _, ...others } = bounds;
+    const { [side]: _, ...otherSides } = bounds;
     const value = numberOf(target.value);
-    onBounds(value === null ? others : { ...others, [side]: value });
+    onBounds(value === null ? otherSides : { ...otherSides, [side]: value });
   };
   return html`
     <div class="may-one" role="group" aria-label=${labelOf(name)}>
@@ -104,15 +104,17 @@ function One({ name, bounds, card, onBounds }) {
 /** @param {{ name: string, bounds: any, onBounds: (bounds: any) => unknown }} props */
 function Names({ name, bounds, onBounds }) {
   const chosen = bounds.choices ?? [];
-  const toggle = (/** @type {string} */ one) => {
-    const now = chosen.includes(one) ? chosen.filter((/** @type {string} */ own) => own !== one) : [...chosen, one];
+  const toggle = (/** @type {string} */ choice) => {
+    const others = chosen.filter((/** @type {string} */ other) => other !== choice);
+    const now = chosen.includes(choice) ? others : [...chosen, choice];
     if (now.length > 0) onBounds({ choices: now });
   };
   return html`
     <div class="panel-boxes">
-      ${namesOf(name).map((one) => html`
-        <label class="check" key=${one.name}>
-          <input type="checkbox" checked=${chosen.includes(one.name)} onChange=${() => toggle(one.name)} />${one.title}
+      ${namesOf(name).map((item) => html`
+        <label class="check" key=${item.name}>
+          <input type="checkbox" checked=${chosen.includes(item.name)}
+            onChange=${() => toggle(item.name)} />${item.title}
         </label>
       `)}
     </div>

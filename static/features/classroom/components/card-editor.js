@@ -43,8 +43,8 @@ export function CardEditor() {
 /** Null stands for all panels. @param {any} show @param {string} tab @returns {any} */
 function toggled(show, tab) {
   const shown = show ?? allTabs.peek();
-  const now = shown.includes(tab) ? shown.filter((/** @type {string} */ one) => one !== tab) : [...shown, tab];
-  return now.length === allTabs.peek().length ? null : allTabs.peek().filter((one) => now.includes(one));
+  const now = shown.includes(tab) ? shown.filter((/** @type {string} */ name) => name !== tab) : [...shown, tab];
+  return now.length === allTabs.peek().length ? null : allTabs.peek().filter((name) => now.includes(name));
 }
 
 /** @param {{ card: LessonCard }} props */
@@ -74,8 +74,8 @@ const Taken = ({ card }) => html`
 /** @param {any} state */
 function stateInWords(state) {
   if (!state) return "as it was";
-  const { form = {}, ...others } = state;
-  const words = [...Object.entries(others), ...Object.entries(form ?? {})].filter(([, value]) => value !== null)
+  const { form = {}, ...pageState } = state;
+  const words = [...Object.entries(pageState), ...Object.entries(form ?? {})].filter(([, value]) => value !== null)
     .map(([name, value]) => `${name} ${typeof value === "object" ? JSON.stringify(value) : value}`);
   return words.join(", ") || "as it was";
 }

@@ -50,18 +50,18 @@ const NoLesson = () => html`
 /** The lanes to choose from; then what was chosen, and at time-out what came of it. */
 export function Prediction() {
   const lanes = predictable.value;
-  const own = lanes.find(({ lane }) => lane === prediction.value);
+  const predictedLane = lanes.find(({ lane }) => lane === prediction.value);
   const winners = outcome.value;
   if (winners?.length) {
     const isRight = winners.some(({ lane }) => lane === prediction.value);
     const verdict = `It ${winners.length > 1 ? "is level:" : "was"} ${listed(winners.map(({ title }) => title))}.`;
-    const remark = isRight ? " You were right." : ` You chose ${own?.title}.`;
-    return html`<p class="prediction" role="status">${verdict}${own && remark}</p>`;
+    const remark = isRight ? " You were right." : ` You chose ${predictedLane?.title}.`;
+    return html`<p class="prediction" role="status">${verdict}${predictedLane && remark}</p>`;
   }
-  if (own) {
+  if (predictedLane) {
     return html`
-      <p class="prediction" style=${{ "--agent": own.color }}>
-        Your prediction: <span class="swatch"></span><b>${own.title}</b>
+      <p class="prediction" style=${{ "--agent": predictedLane.color }}>
+        Your prediction: <span class="swatch"></span><b>${predictedLane.title}</b>
       </p>
     `;
   }

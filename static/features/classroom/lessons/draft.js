@@ -12,13 +12,13 @@ const EMPTY = { title: "", cards: [{ text: "" }] };
 const LEFT_OUT = ["seed", "name", "pace"];
 const REPEATED = "disturb";
 
-const kept = storedText("lesson-draft", "");
+const storedDraft = storedText("lesson-draft", "");
 
 /** @returns {LessonDocument | null} */
 function readKept() {
   try {
-    const found = JSON.parse(kept.peek());
-    return Array.isArray(found?.cards) && found.cards.length > 0 ? found : null;
+    const draft = JSON.parse(storedDraft.peek());
+    return Array.isArray(draft?.cards) && draft.cards.length > 0 ? draft : null;
   } catch {
     return null;
   }
@@ -36,7 +36,7 @@ export const chosenCard = computed(() => draft.value?.cards[chosen.value] ?? nul
 /** @param {LessonDocument | null} lesson */
 function put(lesson) {
   document_.value = lesson;
-  kept.value = lesson === null ? "" : JSON.stringify(lesson);
+  storedDraft.value = lesson === null ? "" : JSON.stringify(lesson);
 }
 
 /** Begin a lesson, or edit a copy of one. @param {LessonDocument} [lesson] */
@@ -100,8 +100,8 @@ export function pageAsState() {
     hidden: hiddenParts.length > 0 ? hiddenParts : null,
     form: Object.keys(form).length > 0 ? form : null,
   };
-  const told = Object.entries(set).filter(([, value]) => value !== null);
-  return /** @type {NonNullable<LessonCard["state"]>} */ ({ depth: depth.peek(), ...Object.fromEntries(told) });
+  const entries = Object.entries(set).filter(([, value]) => value !== null);
+  return /** @type {NonNullable<LessonCard["state"]>} */ ({ depth: depth.peek(), ...Object.fromEntries(entries) });
 }
 
 /** A lesson of the server as a document that can be edited: without what is null, and what the server adds. */
@@ -112,9 +112,10 @@ export const documentOf = ({ title, language, aims, cards }) => without({ title,
 function without(value) {
   if (Array.isArray(value)) return value.map(without);
   if (value === null || typeof value !== "object") return value;
-  const pairs = Object.entries(value).filter(([, one]) => one !== null).map(([name, one]) => [name, without(one)]);
+  const pairs = Object.entries(value)
+    .filter(([, field]) => field !== null).map(([name, field]) => [name, without(field)]);
   // Bounds of a setting may be empty: all that is valid.
-  return Object.fromEntries(pairs.filter(([, one]) => !isEmpty(one)));
+  return Object.fromEntries(pairs.filter(([, field]) => !isEmpty(field)));
 }
 
 /** @param {unknown} value */
@@ -123,8 +124,8 @@ const isEmpty = (value) => Array.isArray(value) && value.length === 0;
 /** The draft as it is sent: without texts that are empty. @param {LessonDocument} lesson @returns {LessonDocument} */
 export const toSend = ({ title, language, aims, cards }) => without({
   title: title.trim(), language: language?.trim() || null, aims: aims ?? [],
-  cards: cards.map(({ title: own, reveal, ...card }) => ({
-    ...card, title: own?.trim() || null, reveal: revealToSend(reveal ?? null),
+  cards: cards.map(({ title: cardTitle, reveal, ...card }) => ({
+    ...card, title: cardTitle?.trim() || null, reveal: revealToSend(reveal ?? null),
   })),
 });
 

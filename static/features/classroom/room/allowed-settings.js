@@ -27,7 +27,7 @@ function namesOf(name) {
   const { agents = [], gaits = [], robots = [], worlds = [], simulators = [], observations = [] } = options.value ?? {};
   const lists = /** @type {Record<string, { name: string, title: string }[]>} */ (
     { agent: agents, gait: gaits, robot: robots, world: worlds, simulator: simulators, observation: observations });
-  return (lists[name] ?? []).map((one) => [one.name, sentence(one.title)]);
+  return (lists[name] ?? []).map((item) => [item.name, sentence(item.title)]);
 }
 
 /**
@@ -40,10 +40,10 @@ function namesOf(name) {
 function ruleOf(name, bounds, card) {
   const setting = settingOf(name, card);
   const names = namesOf(name);
-  const words = setting?.choices.map((one) => [one, choiceTitle(setting, one)]) ?? [];
+  const words = setting?.choices.map((choice) => [choice, choiceTitle(setting, choice)]) ?? [];
   const titles = new Map(/** @type {[any, string][]} */ (names.length ? names : words));
   const allowed = bounds.choices ?? [...titles.keys()];
-  if (allowed.length) return { choices: allowed.map((one) => [one, titles.get(one) ?? String(one)]) };
+  if (allowed.length) return { choices: allowed.map((choice) => [choice, titles.get(choice) ?? String(choice)]) };
   return { limits: limitsWithin(bounds, setting), isWhole: setting?.is_whole ?? false };
 }
 
@@ -65,7 +65,7 @@ function initialOf(name, bounds, card) {
   const settings = /** @type {Record<string, unknown>} */ (form.settings ?? {});
   const value = form[name] ?? settings[name] ?? settingOf(name, card)?.default ?? null;
   const { choices } = ruleOf(name, bounds, card);
-  if (choices) return choices.some(([one]) => one === value) ? value : choices[0]?.[0] ?? null;
+  if (choices) return choices.some(([choice]) => choice === value) ? value : choices[0]?.[0] ?? null;
   return value;
 }
 
@@ -91,7 +91,7 @@ function valueOf(name, bounds, card, number) {
 /** Settings in words: "α 0.3, 500 steps". @type {(given: Record<string, any>, card: LessonCard) => string} */
 export const givenInWords = (given, card) => Object.entries(given).map(([name, value]) => {
   const setting = settingOf(name, card);
-  const title = namesOf(name).find(([one]) => one === value)?.[1];
+  const title = namesOf(name).find(([choice]) => choice === value)?.[1];
   return title ?? `${setting?.symbol ?? setting?.title.toLowerCase() ?? name}\u00a0${value}`;
 }).join(", ");
 

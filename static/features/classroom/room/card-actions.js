@@ -23,8 +23,8 @@ const needsAnswer = (card) => Boolean(card.ask) && ownAnswer.value === undefined
 /** Whether the card runs what has been run already: the same settings give the same run. */
 /** @type {(card: LessonCard, settings: Record<string, unknown> | null) => boolean} */
 function isSameAgain({ may, go: kind }, settings) {
-  const isAlike = (/** @type {Record<string, unknown>} */ given) =>
-    Object.keys(may ?? {}).every((name) => given[name] === settings?.[name]);
+  const isAlike = (/** @type {Record<string, unknown>} */ settingsOfRun) =>
+    Object.keys(may ?? {}).every((name) => settingsOfRun[name] === settings?.[name]);
   if (kind === "what-if") return ownWhatIf.value !== null && isAlike(ownEntry.value?.run?.given ?? {});
   if (ownRun.value === null || ownRun.value.state !== "finished") return false;
   const { id = null, given = {} } = ownEntry.value?.run ?? {};
@@ -34,7 +34,7 @@ function isSameAgain({ may, go: kind }, settings) {
 }
 
 /** @param {{ card: LessonCard, number: number, isOpen: boolean }} props */
-export function Deeds({ card, number, isOpen }) {
+export function CardActions({ card, number, isOpen }) {
   const settings = chosenSettings(card, number);
   const mayAct = isOpen && !busy.value.lock && !busy.value.go;
   const isAsked = needsAnswer(card);
@@ -85,10 +85,10 @@ const Button = ({ style, canPress, onPress, words }) => html`
 
 /** What one waits for, once all is done. @param {{ card: LessonCard }} props */
 export function Next({ card }) {
-  const known = room.value;
-  if (known === null || needsAnswer(card) || goesOn(ownRun.value)) return null;
+  const classroom = room.value;
+  if (classroom === null || needsAnswer(card) || goesOn(ownRun.value)) return null;
   if (card.go && !ownRun.value && !ownWhatIf.value) return null;
-  return html`<p class="dim waiting" role="status">${waitingFor(card, known.card === known.cards - 1)}</p>`;
+  return html`<p class="dim waiting" role="status">${waitingFor(card, classroom.card === classroom.cards - 1)}</p>`;
 }
 
 /** @type {(card: LessonCard, isLast: boolean) => string} */

@@ -19,54 +19,55 @@ const codeIsOpen = signal(false);
 const [willEnd, willDelete] = [signal(false), signal(false)];
 
 export function Cockpit() {
-  const known = /** @type {Classroom} */ (room.value);
+  const classroom = /** @type {Classroom} */ (room.value);
   return html`
-    <${Header} known=${known} />
+    <${Header} classroom=${classroom} />
     <${Away} />
     <main class="cockpit">
       <div class="cockpit-main">
-        <${Act} known=${known} />
-        <${Counts} known=${known} />
-        <${Deeds} known=${known} />
+        <${Act} classroom=${classroom} />
+        <${Counts} classroom=${classroom} />
+        <${Actions} classroom=${classroom} />
         <${Dots} />
       </div>
-      <${People} known=${known} />
-      <${Slot} name="cockpit of a room" room=${known} />
-      <${Ways} known=${known} />
+      <${People} classroom=${classroom} />
+      <${Slot} name="cockpit of a room" room=${classroom} />
+      <${Ways} classroom=${classroom} />
     </main>
-    <${Code} known=${known} />
+    <${Code} classroom=${classroom} />
     <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
   `;
 }
 
 const STATES = { open: "You teach", frozen: "All stand still", ended: "The room has ended" };
 
-/** @param {{ known: Classroom }} props */
-const Header = ({ known }) => html`
+/** @param {{ classroom: Classroom }} props */
+const Header = ({ classroom }) => html`
   <header class="room-header cockpit-header">
     <button class="code-button" onClick=${() => (codeIsOpen.value = true)} title="Show it large">
-      <b class="code">${codeInGroups(known.code)}</b>${known.qr_code && html`<img src=${known.qr_code} alt="" />`}
+      <b class="code">${codeInGroups(classroom.code)}</b>
+      ${classroom.qr_code && html`<img src=${classroom.qr_code} alt="" />`}
       <span class="sr-only">Code in large</span>
     </button>
-    <p><b>${known.title}</b><span class="dim">${STATES[known.state]}</span></p>
+    <p><b>${classroom.title}</b><span class="dim">${STATES[classroom.state]}</span></p>
     <button class="quiet square" onClick=${nextTheme} aria-label=${`Theme: ${theme.value}`}
       title=${`Theme: ${theme.value}`}><${Icon} name=${theme.value} /></button>
   </header>
 `;
 
-/** The code in large, to be held up. @param {{ known: Classroom }} props */
-const Code = ({ known }) => html`
+/** The code in large, to be held up. @param {{ classroom: Classroom }} props */
+const Code = ({ classroom }) => html`
   <${Dialog} isOpen=${codeIsOpen} id="code-dialog" labelledBy="code-title" style="code-dialog">
-    ${known.qr_code ? html`
+    ${classroom.qr_code ? html`
       <h2 id="code-title">Join at</h2>
-      <p class="join-address">${shortAddress(known.address)}</p>
-      <img class="large-qr" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
-      <p class="code large-code">${codeInGroups(known.code)}</p>
-      <button class="secondary" onClick=${() => copy(known.address, "Link copied.")}>Copy the link</button>
+      <p class="join-address">${shortAddress(classroom.address)}</p>
+      <img class="large-qr" src=${classroom.qr_code} alt=${`QR code of ${classroom.address}`} />
+      <p class="code large-code">${codeInGroups(classroom.code)}</p>
+      <button class="secondary" onClick=${() => copy(classroom.address, "Link copied.")}>Copy the link</button>
     ` : html`
       <h2 id="code-title">On this computer alone</h2>
       <${Sharing} />
-      <${PupilsWindow} address=${known.address} />
+      <${PupilsWindow} address=${classroom.address} />
     `}
     <button class="quiet" onClick=${() => (codeIsOpen.value = false)}>Close</button>
   <//>
@@ -77,11 +78,11 @@ const Code = ({ known }) => html`
 /** @param {LessonCard | undefined} card @param {number} number */
 const titleOf = (card, number) => card?.title ?? `Card ${number + 1}`;
 
-/** @param {{ known: Classroom }} props */
-function Act({ known }) {
-  const { card, cards, shown, html: texts, lesson } = known;
+/** @param {{ classroom: Classroom }} props */
+function Act({ classroom }) {
+  const { card, cards, shown, html: texts, lesson } = classroom;
   const all = lesson?.cards ?? [];
-  const isStill = known.state === "ended" || busy.value.card;
+  const isStill = classroom.state === "ended" || busy.value.card;
   const isLast = card === cards - 1;
   return html`
     <article class="panel act-now" aria-labelledby="act-title">
@@ -110,9 +111,9 @@ function Act({ known }) {
 /** @param {LessonCard} card */
 const mayInWords = ({ may = {} }) => (Object.keys(may).length ? `; open: ${Object.keys(may).join(", ")}` : "");
 
-/** @param {{ known: Classroom }} props */
-function Counts({ known }) {
-  const { participants, predicted, started, shown } = known;
+/** @param {{ classroom: Classroom }} props */
+function Counts({ classroom }) {
+  const { participants, predicted, started, shown } = classroom;
   const finished = shownResults.value?.finished ?? 0;
   const figures = [
     [participants, "joined"],
@@ -126,11 +127,11 @@ function Counts({ known }) {
   `;
 }
 
-/** @param {{ known: Classroom }} props */
-function Deeds({ known }) {
-  const { state, spotlight: lit, shown } = known;
+/** @param {{ classroom: Classroom }} props */
+function Actions({ classroom }) {
+  const { state, spotlight: lit, shown } = classroom;
   const isOver = state === "ended";
-  const hasReveal = Boolean(shown.ask || shown.go || known.html.reveal);
+  const hasReveal = Boolean(shown.ask || shown.go || classroom.html.reveal);
   return html`
     <div class="row deeds-of-all">
       <button class="secondary" aria-pressed=${state === "frozen" ? "true" : "false"}
@@ -146,9 +147,9 @@ function Deeds({ known }) {
 }
 
 function Dots() {
-  const found = shownResults.value;
-  if (!found || found.distances_m.length === 0) return null;
-  const { distances_m, interval } = found;
+  const results = shownResults.value;
+  if (!results || results.distances_m.length === 0) return null;
+  const { distances_m, interval } = results;
   const { low, high } = axisOf(distances_m);
   const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
   const words = `${count(distances_m.length, "robot")}, typically ${metres(interval?.iqm_m)}`;
@@ -163,17 +164,17 @@ function Dots() {
 
 // ---- the projector, the results, the end
 
-/** @param {{ known: Classroom }} props */
-const Ways = ({ known }) => html`
+/** @param {{ classroom: Classroom }} props */
+const Ways = ({ classroom }) => html`
   <footer class="ways">
-    <a class="secondary as-button" href=${`${known.code}?projector`} target="_blank">
+    <a class="secondary as-button" href=${`${classroom.code}?projector`} target="_blank">
       <${Icon} name="present" />Projector
     </a>
-    <a class="secondary as-button" href=${resultsFile(known.code)} download="">
+    <a class="secondary as-button" href=${resultsFile(classroom.code)} download="">
       <${Icon} name="import" />Results (CSV)
     </a>
     <a class="secondary as-button" href="../">Dashboard</a>
-    ${known.state === "ended" ? html`<${Removal} />` : html`<${End} />`}
+    ${classroom.state === "ended" ? html`<${Removal} />` : html`<${End} />`}
     <${Failure} at="end" />
   </footer>
 `;

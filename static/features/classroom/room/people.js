@@ -14,9 +14,9 @@ import { busy, changeParticipant, goesOn, removeParticipant, shownResults, spotl
 const chosen = signal(null);
 const removalIsOpen = signal(false);
 
-/** @param {{ known: Classroom }} props */
-export function People({ known }) {
-  const people = known.people.filter(({ is_present, run_id, has_predicted }) =>
+/** @param {{ classroom: Classroom }} props */
+export function People({ classroom }) {
+  const people = classroom.people.filter(({ is_present, run_id, has_predicted }) =>
     is_present || run_id || has_predicted);
   const entries = new Map((shownResults.value?.entries ?? []).map((entry) => [entry.seed, entry]));
   const head = useRef(/** @type {HTMLElement | null} */ (null));
@@ -28,7 +28,7 @@ export function People({ known }) {
       `}
       <ul>
         ${people.map((person) => html`
-          <${One} key=${person.seed} person=${person} entry=${entries.get(person.seed)} known=${known} />
+          <${PersonRow} key=${person.seed} person=${person} entry=${entries.get(person.seed)} classroom=${classroom} />
         `)}
       </ul>
     </section>
@@ -67,16 +67,16 @@ function askToRemove(person) {
   removalIsOpen.value = true;
 }
 
-/** @param {{ person: Person, entry: ResultEntry | undefined, known: Classroom }} props */
-function One({ person, entry, known }) {
+/** @param {{ person: Person, entry: ResultEntry | undefined, classroom: Classroom }} props */
+function PersonRow({ person, entry, classroom }) {
   const { seed, name, is_name_hidden, is_approved, run_id } = person;
-  const isLit = run_id !== null && known.spotlight === run_id;
+  const isLit = run_id !== null && classroom.spotlight === run_id;
   const hideWords = is_name_hidden ? "Show name" : "Hide name";
   return html`
     <li>
       <p>
         <b class=${is_name_hidden ? "hidden-name" : ""}>${name}</b>
-        <span class="dim">${howFar(person, entry, known)}</span>
+        <span class="dim">${howFar(person, entry, classroom)}</span>
       </p>
       <span class="person-deeds">
         ${!is_approved && html`
@@ -91,7 +91,7 @@ function One({ person, entry, known }) {
         `}
         <button class="quiet compact" aria-label=${`${hideWords}: ${name}`}
           onClick=${() => changeParticipant(seed, { is_name_hidden: !is_name_hidden })}>${hideWords}</button>
-        ${known.state !== "ended" && html`
+        ${classroom.state !== "ended" && html`
           <button class="quiet square" title="Remove" aria-label=${`Remove ${name}…`}
             onClick=${() => askToRemove(person)}>✕</button>
         `}
@@ -102,7 +102,7 @@ function One({ person, entry, known }) {
 }
 
 /** How far a participant is on the card. */
-/** @type {(person: Person, entry: ResultEntry | undefined, known: Classroom) => string} */
+/** @type {(person: Person, entry: ResultEntry | undefined, classroom: Classroom) => string} */
 function howFar(person, entry, { shown }) {
   const parts = [`seed ${person.seed}`];
   if (!person.is_present) parts.push("left");

@@ -27,17 +27,18 @@ export function WhatIfDots({ answer }) {
 /** The distances of the class, with the own one among them. */
 export function ClassDots() {
   const { distances_m, interval } = /** @type {NonNullable<typeof shownResults.value>} */ (shownResults.value);
-  const own = ownEntry.value?.run ?? null;
+  const ownRun = ownEntry.value?.run ?? null;
   const { low, high } = axisOf(distances_m);
   const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
   const all = count(distances_m.length, "seed");
-  const rank = own?.rank ? `Rank ${own.rank} of ${all}` : all;
+  const rank = ownRun?.rank ? `Rank ${ownRun.rank} of ${all}` : all;
   return html`
     <h2>${rank}</h2>
     <${DotStrip} label=${`${rank}, from ${metres(distances_m[0])} to ${metres(distances_m.at(-1))}`} size=${1.6}
-      points=${distances_m} low=${low} high=${high} typical=${typical} axis=${metres} own=${own?.distance_m ?? null} />
+      points=${distances_m} low=${low} high=${high} typical=${typical} axis=${metres}
+      own=${ownRun?.distance_m ?? null} />
     <p class="dim">
-      ${own && html`<span class="own-key">your robot</span> ${metres(own.distance_m)}, `}the class typically
+      ${ownRun && html`<span class="own-key">your robot</span> ${metres(ownRun.distance_m)}, `}the class typically
       ${" "}${metres(interval?.iqm_m)}
       ${interval && interval.low_m !== null && html` (95 %: ${metres(interval.low_m)} to ${metres(interval.high_m)})`}
     </p>

@@ -4,7 +4,7 @@ import { getCurve } from "../../../js/api.js";
 import { html, Loaded, Slot } from "../../../js/components/elements.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
-import { Deeds, Next } from "./card-actions.js";
+import { CardActions, Next } from "./card-actions.js";
 import { Away, Door } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { CLOSER, closerLink, replayed } from "./picture.js";
@@ -16,20 +16,22 @@ import {
 /** @import { Ask, Classroom, LessonCard } from "../../../js/types.js" */
 
 export function Phone() {
-  const known = /** @type {Classroom} */ (room.value);
-  if (known.role !== "participant") return html`<${Door} />`;
-  const { me } = /** @type {{ me: NonNullable<Classroom["me"]> }} */ (known);
+  const classroom = /** @type {Classroom} */ (room.value);
+  if (classroom.role !== "participant") return html`<${Door} />`;
+  const { me } = /** @type {{ me: NonNullable<Classroom["me"]> }} */ (classroom);
   return html`
     <header class="room-header">
       <p><b>${me.name}</b><span class="dim">seed ${me.seed}</span></p>
-      <p class="dim code">${codeInGroups(known.code)}</p>
+      <p class="dim code">${codeInGroups(classroom.code)}</p>
     </header>
     <${Away} words="Your name and your seed are kept." />
-    ${known.state === "frozen" && html`
+    ${classroom.state === "frozen" && html`
       <p class="strip-note" role="status">The teacher has stopped the class for a moment. Look to the front.</p>
     `}
     <main class="phone">
-      ${known.state === "ended" ? html`<${Ended} />` : html`<${Present} key=${known.card} known=${known} />`}
+      ${classroom.state === "ended"
+        ? html`<${Ended} />`
+        : html`<${Present} key=${classroom.card} classroom=${classroom} />`}
     </main>
   `;
 }
@@ -47,9 +49,9 @@ const loadClass = () => import("./phone-results.js").then(({ ClassDots }) => Cla
 const loadWhatIf = () => import("./phone-results.js").then(({ WhatIfDots }) => WhatIfDots);
 const loadOwnRun = () => import("./participant-run.js").then(({ OwnRun }) => OwnRun);
 
-/** The card that is shown. @param {{ known: Classroom }} props */
-function Present({ known }) {
-  const { shown, html: texts, card, cards, state } = known;
+/** The card that is shown. @param {{ classroom: Classroom }} props */
+function Present({ classroom }) {
+  const { shown, html: texts, card, cards, state } = classroom;
   const isOpen = state === "open";
   // The reveal comes to all at once, and over a poor network: what draws it is there before.
   useEffect(() => { loadClass().catch(() => {}); }, []);
@@ -61,16 +63,16 @@ function Present({ known }) {
       <${Prose} text=${texts.text} />
     </article>
     ${!replayed.value && ownRun.value && html`<${Loaded} name="run" load=${loadOwnRun} />`}
-    ${isRevealed.value && html`<${Revealed} known=${known} />`}
+    ${isRevealed.value && html`<${Revealed} classroom=${classroom} />`}
     ${shown.ask && html`<${Question} card=${shown} number=${card} text=${texts.ask} />`}
     ${shown.go && Object.keys(shown.may ?? {}).length > 0 && html`
       <${May} card=${shown} number=${card} isDisabled=${!isOpen || goesOn(ownRun.value)} />
     `}
     ${ownWhatIf.value && html`<${Loaded} name="thirty robots" load=${loadWhatIf} answer=${ownWhatIf.value} />`}
     <${Closer} card=${shown} />
-    ${known.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${known} />`}
+    ${classroom.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${classroom} />`}
     <${Next} card=${shown} />
-    <${Deeds} card=${shown} number=${card} isOpen=${isOpen} />
+    <${CardActions} card=${shown} number=${card} isOpen=${isOpen} />
   `;
 }
 
@@ -119,17 +121,17 @@ function Closer({ card }) {
 
 // ---- after the reveal
 
-/** @param {{ known: Classroom }} props */
-function Revealed({ known }) {
-  const found = shownResults.value;
-  const own = ownEntry.value;
+/** @param {{ classroom: Classroom }} props */
+function Revealed({ classroom }) {
+  const results = shownResults.value;
+  const entry = ownEntry.value;
   return html`
     <section class="phone-part revealed" aria-label="The class">
-      ${found && found.distances_m.length > 0 && html`<${Loaded} name="class" load=${loadClass} />`}
-      ${own?.score && html`
-        <p class="score" role="status">${scoreInWords(own, /** @type {Ask} */ (known.shown.ask))}</p>
+      ${results && results.distances_m.length > 0 && html`<${Loaded} name="class" load=${loadClass} />`}
+      ${entry?.score && html`
+        <p class="score" role="status">${scoreInWords(entry, /** @type {Ask} */ (classroom.shown.ask))}</p>
       `}
-      ${known.html.reveal && html`<${Prose} text=${known.html.reveal} />`}
+      ${classroom.html.reveal && html`<${Prose} text=${classroom.html.reveal} />`}
     </section>
   `;
 }

@@ -20,22 +20,22 @@ import { axisOf } from "./scores.js";
 /** Size of the dots, against those of a strip in a panel. */
 const DOTS = 4;
 
-/** Whether the class still gathers: nobody has done anything on the first card. @param {Classroom} known */
+/** Whether the class still gathers: nobody has done anything on the first card. @param {Classroom} classroom */
 const isLobby = ({ card, predicted, started, revealed, state }) =>
   card === 0 && predicted === 0 && started === 0 && revealed.length === 0 && state === "open";
 
 export function Projector() {
-  const known = /** @type {Classroom} */ (room.value);
-  const isBefore = isLobby(known);
+  const classroom = /** @type {Classroom} */ (room.value);
+  const isBefore = isLobby(classroom);
   return html`
-    <main class=${`projector ${isBefore ? "lobby" : known.state}`}>
+    <main class=${`projector ${isBefore ? "lobby" : classroom.state}`}>
       <${Away} />
-      ${known.state === "frozen" && html`<${Frozen} />`}
-      <${Door} known=${known} />
-      ${known.state === "ended"
-        ? html`<article class="shown-card"><h1>${known.title}</h1><p>The lesson has ended.</p></article>`
-        : html`<${Shown} known=${known} />`}
-      ${!isBefore && known.state !== "ended" && html`<${Side} known=${known} key=${known.card} />`}
+      ${classroom.state === "frozen" && html`<${Frozen} />`}
+      <${Door} classroom=${classroom} />
+      ${classroom.state === "ended"
+        ? html`<article class="shown-card"><h1>${classroom.title}</h1><p>The lesson has ended.</p></article>`
+        : html`<${Shown} classroom=${classroom} />`}
+      ${!isBefore && classroom.state !== "ended" && html`<${Side} classroom=${classroom} key=${classroom.card} />`}
     </main>
   `;
 }
@@ -45,19 +45,19 @@ const Frozen = () => html`
   <p class="frozen-note" role="status"><${Icon} name="pause" />Stop. Look to the front.</p>
 `;
 
-/** Where to join: large while the class gathers, small from then on. @param {{ known: Classroom }} props */
-const Door = ({ known }) => html`
+/** Where to join: large while the class gathers, small from then on. @param {{ classroom: Classroom }} props */
+const Door = ({ classroom }) => html`
   <section class="join-here" aria-label="How to join">
-    ${known.qr_code && html`
-      <img class="qr-code" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
+    ${classroom.qr_code && html`
+      <img class="qr-code" src=${classroom.qr_code} alt=${`QR code of ${classroom.address}`} />
     `}
     <div>
-      <p class="code">${codeInGroups(known.code)}</p>
-      <p class="join-address">${known.qr_code ? shortAddress(known.address) : "On this computer alone"}</p>
+      <p class="code">${codeInGroups(classroom.code)}</p>
+      <p class="join-address">${classroom.qr_code ? shortAddress(classroom.address) : "On this computer alone"}</p>
       <p class="joined" role="status">
-        <b class="num">${known.participants}</b> ${known.participants === 1 ? "is" : "are"} in
+        <b class="num">${classroom.participants}</b> ${classroom.participants === 1 ? "is" : "are"} in
       </p>
-      ${known.tournaments.length > 0 && html`<${Slot} name="projector of a room" room=${known} />`}
+      ${classroom.tournaments.length > 0 && html`<${Slot} name="projector of a room" room=${classroom} />`}
     </div>
   </section>
 `;
@@ -84,25 +84,26 @@ function useFit() {
   return element;
 }
 
-/** @param {{ known: Classroom }} props */
-const Shown = ({ known }) => html`
+/** @param {{ classroom: Classroom }} props */
+const Shown = ({ classroom }) => html`
   <article class="shown-card" aria-labelledby="shown-title" ref=${useFit()}>
-    <p class="where">${known.title} · ${known.card + 1} of ${known.cards}</p>
-    ${known.shown.title && html`<h1 id="shown-title">${known.shown.title}</h1>`}
-    ${known.spotlight !== null && html`<${Lit} known=${known} />`}
-    <${Prose} text=${isRevealed.value && known.html.reveal ? known.html.reveal : known.html.text} />
-    ${known.shown.ask && html`<${Asked} known=${known} ask=${known.shown.ask} />`}
+    <p class="where">${classroom.title} · ${classroom.card + 1} of ${classroom.cards}</p>
+    ${classroom.shown.title && html`<h1 id="shown-title">${classroom.shown.title}</h1>`}
+    ${classroom.spotlight !== null && html`<${Lit} classroom=${classroom} />`}
+    <${Prose} text=${isRevealed.value && classroom.html.reveal ? classroom.html.reveal : classroom.html.text} />
+    ${classroom.shown.ask && html`<${Asked} classroom=${classroom} ask=${classroom.shown.ask} />`}
   </article>
 `;
 
-/** The question, and how many have locked an answer. @param {{ known: Classroom, ask: Ask }} props */
-function Asked({ known, ask }) {
-  const values = (shownResults.value?.entries ?? []).map(({ prediction }) => prediction).filter((one) => one !== null);
+/** The question, and how many have locked an answer. @param {{ classroom: Classroom, ask: Ask }} props */
+function Asked({ classroom, ask }) {
+  const values = (shownResults.value?.entries ?? [])
+    .map(({ prediction }) => prediction).filter((value) => value !== null);
   const { tally } = KINDS[ask.kind];
   const most = Math.max(1, values.length);
   return html`
     <section class="asked" aria-label="Question">
-      <${Prose} text=${known.html.ask} />
+      <${Prose} text=${classroom.html.ask} />
       ${tally && html`
         <ul class=${`asked-choices ${isRevealed.value ? "counted" : ""}`}>
           ${tally(ask, isRevealed.value ? values : []).map(([choice, number]) => html`
@@ -119,14 +120,14 @@ function Asked({ known, ask }) {
 
 // ---- beside the card: counts, dots, the run in the spotlight
 
-/** @param {{ known: Classroom }} props */
-function Side({ known }) {
-  const { shown, predicted, participants, started } = known;
-  const found = shownResults.value;
+/** @param {{ classroom: Classroom }} props */
+function Side({ classroom }) {
+  const { shown, predicted, participants, started } = classroom;
+  const results = shownResults.value;
   if (isRevealed.value && shown.ask && KINDS[shown.ask.kind].onChart) {
-    return html`<${Beside}><${Lines} card=${shown} entries=${found?.entries ?? []} /><//>`;
+    return html`<${Beside}><${Lines} card=${shown} entries=${results?.entries ?? []} /><//>`;
   }
-  const hasDots = (found?.distances_m ?? []).length > 0;
+  const hasDots = (results?.distances_m ?? []).length > 0;
   const parts = [];
   if (shown.ask && !isRevealed.value) parts.push(html`<${Of} number=${predicted} all=${participants} word="locked" />`);
   if (hasDots) parts.push(html`<${Landing} card=${shown} />`);
@@ -144,14 +145,14 @@ const Of = ({ number, all, word }) => html`
   <p class="locked-count" role="status"><b class="num">${number}</b> of ${all} ${word}</p>
 `;
 
-/** The run of a participant that the teacher shows to all. @param {{ known: Classroom }} props */
-function Lit({ known }) {
-  const entry = shownResults.value?.entries.find(({ run }) => run?.id === known.spotlight);
+/** The run of a participant that the teacher shows to all. @param {{ classroom: Classroom }} props */
+function Lit({ classroom }) {
+  const entry = shownResults.value?.entries.find(({ run }) => run?.id === classroom.spotlight);
   // Not before its picture is there.
-  const distance_m = isShownToEnd(scene.value, known.spotlight) ? entry?.run?.distance_m ?? null : null;
+  const distance_m = isShownToEnd(scene.value, classroom.spotlight) ? entry?.run?.distance_m ?? null : null;
   return html`
     <div class="lit">
-      <${Picture} source="stage" key=${known.spotlight} />
+      <${Picture} source="stage" key=${classroom.spotlight} />
       <p>
         <b>${entry?.name ?? "One of you"}</b>
         ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
@@ -166,7 +167,7 @@ function Lit({ known }) {
  */
 function Landing({ card: { ask = null, go } }) {
   const { distances_m, interval, entries } = /** @type {CardResults} */ (shownResults.value);
-  const values = entries.map(({ prediction }) => prediction).filter((one) => one !== null);
+  const values = entries.map(({ prediction }) => prediction).filter((prediction) => prediction !== null);
   const predicted = (isRevealed.value && ask && KINDS[ask.kind].metresOf?.(ask, values)) || null;
   const { low, high } = axisOf([...distances_m, ...(predicted ?? [])]);
   const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
@@ -204,7 +205,7 @@ function Lines({ card, entries }) {
     (run?.state === "finished" && run.kind === "training" ? [run.id] : []));
   useEffect(() => {
     if (ids.length === 0) return;
-    getCurves(ids).then(({ curves: found }) => setCurves(found.map(({ steps: xs, distances_m }) =>
+    getCurves(ids).then(({ curves: loaded }) => setCurves(loaded.map(({ steps: xs, distances_m }) =>
       xs.map((x, n) => [x, distances_m[n] ?? 0]))), () => {});
   }, [ids.join()]);
   const steps = stepsOf(card);
@@ -214,10 +215,10 @@ function Lines({ card, entries }) {
     <svg class="draw-chart lines" viewBox="0 0 340 200" role="img"
       aria-label=${`${predicted.length} predictions over ${curves.length} learning curves`}>
       <${Axes} steps=${steps} />
-      ${curves.filter((one) => one.length > 1).map((one) => html`
-        <path class="actual" d=${`M${lineOf(one, steps)}`} />
+      ${curves.filter((curve) => curve.length > 1).map((curve) => html`
+        <path class="actual" d=${`M${lineOf(curve, steps)}`} />
       `)}
-      ${predicted.map((one) => onChart?.(one, steps))}
+      ${predicted.map((prediction) => onChart?.(prediction, steps))}
     </svg>
     <p class="key"><span class="predicted-key">predicted</span><span class="actual-key">learned</span></p>
   `;

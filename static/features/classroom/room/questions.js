@@ -62,7 +62,7 @@ const RightChoice = ({ ask, answer, change }) => html`
   <select id="card-answer" value=${answer ?? ""}
     onChange=${(/** @type {any} */ { target }) => change(target.value || null)}>
     <option value="">None: it follows from the runs</option>
-    ${(ask.choices ?? []).map((one) => html`<option key=${one} value=${one}>${one}</option>`)}
+    ${(ask.choices ?? []).map((choice) => html`<option key=${choice} value=${choice}>${choice}</option>`)}
   </select>
 `;
 
@@ -229,10 +229,10 @@ export function Answer({ card, number, locked, actual = [] }) {
  * @param {Ask} ask
  */
 export function scoreInWords({ score, prediction }, ask) {
-  const known = /** @type {Score} */ (score);
-  if (known.is_right !== null) {
-    const off = known.error ? ` It is ${errorInWords(known.error, ask.unit ?? "")} off.` : "";
-    return known.is_right ? "You were right." : `That was not it.${off}`;
+  const answerScore = /** @type {Score} */ (score);
+  if (answerScore.is_right !== null) {
+    const off = answerScore.error ? ` It is ${errorInWords(answerScore.error, ask.unit ?? "")} off.` : "";
+    return answerScore.is_right ? "You were right." : `That was not it.${off}`;
   }
-  return KINDS[ask.kind].scoreInWords(known, ask, prediction) ?? "Your prediction is kept.";
+  return KINDS[ask.kind].scoreInWords(answerScore, ask, prediction) ?? "Your prediction is kept.";
 }

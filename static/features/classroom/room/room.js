@@ -86,8 +86,8 @@ export async function refreshResults() {
   const { card, role } = room.peek() ?? {};
   if (card === undefined || role === "spectator" && !isProjector) return;
   try {
-    const { cards: [found] } = await api.getResults(code, card, isProjector);
-    setEntry(results, `${card}`, found);
+    const { cards: [cardResults] } = await api.getResults(code, card, isProjector);
+    setEntry(results, `${card}`, cardResults);
   } catch {
     // The next event asks again.
   }
@@ -113,8 +113,8 @@ function onRoom(state) {
 
 /** Ask for the room when a tournament of it is opened or has ended. @param {{ id: string, state: string }} data */
 function onTournament({ id, state }) {
-  const known = room.peek()?.tournaments.find((one) => one.id === id);
-  if (known?.state !== state) refreshSoon();
+  const tournament = room.peek()?.tournaments.find((entry) => entry.id === id);
+  if (tournament?.state !== state) refreshSoon();
 }
 
 /** @param {string} name @param {any} data */

@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import {
   addOne, body, cancel, canUndo, canUse, chooseLeg, chosenLeg, consequences, followBody, followerOf, goToMistake,
   isMirrored, isRefused, mistakes, noFewerLegs, noMoreLegs, objectionsAt, openingError, part, placeInWords,
-  removeChosen, takeBetter, told, undo, useBody,
+  removeChosen, takeBetter, previewAnswer, undo, useBody,
 } from "../body-editor.js";
 import { bodyName, canSave, followSaving, saveBody, unsaved } from "../body-saving.js";
 import { reachInWords } from "../body-words.js";
@@ -133,21 +133,21 @@ const FieldSide = () => html`
 
 /** What is known of the body beforehand, and what the editor changes besides. */
 function Known() {
-  const answer = told.value;
+  const answer = previewAnswer.value;
   return html`
     <div class="body-known" role="group" aria-label="Known before it walks">
       <p role="status">
         ${answer && !isRefused.value
-          ? html`<b>${count(answer.known.legs.length, "leg")}:</b> ${inWords(answer.known)}`
+          ? html`<b>${count(answer.preview.legs.length, "leg")}:</b> ${inWords(answer.preview)}`
           : "Not known."}
       </p>
       ${objectionsAt.value.filter(({ legs }) => !isSaidAtFields(legs)).map(({ legs, words }) => html`
         <${Objection} key=${words} legs=${legs} words=${words} />
       `)}
-      ${answer?.known.better && !isRefused.value && html`
+      ${answer?.preview.better && !isRefused.value && html`
         <button class="link" onClick=${takeBetter}>Take groups with which it stands</button>
       `}
-      ${answer && !isRefused.value && html`<p class="dim">${reachInWords(answer.known)}</p>`}
+      ${answer && !isRefused.value && html`<p class="dim">${reachInWords(answer.preview)}</p>`}
       ${consequences.value.map((words) => html`<p key=${words} class="dim">${words}</p>`)}
     </div>
   `;

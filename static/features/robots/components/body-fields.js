@@ -17,7 +17,7 @@ const HALF_TURN_DEG = 180;
 export function BodyFields() {
   const words = part.value === "leg" ? impossibleAt(chosenLeg.value) : "";
   return html`
-    <${Segments} label="What to change" value=${part.value} onValue=${(/** @type {any} */ one) => (part.value = one)}
+    <${Segments} label="What to change" value=${part.value} onValue=${(/** @type {any} */ name) => (part.value = name)}
       choices=${[["leg", `Leg ${chosenLeg.value}`], ["all", "All legs"], ["torso", "Torso"]]} />
     ${words && html`<p class="mistake" role="alert">${words}</p>`}
     ${part.value === "leg" && html`<p class="sentence">${followerInWords()}</p>`}
@@ -57,7 +57,8 @@ function Row({ field, setting }) {
   const values = valuesOf(field);
   const [value = min] = values;
   const reached = Math.min(Math.max(value ?? min, min), max);
-  const differ = values.length > 1 ? `They differ: ${values.map((one) => Number(one?.toFixed(3))).join(", ")}. ` : "";
+  const listed = values.map((number) => Number(number?.toFixed(3))).join(", ");
+  const differ = values.length > 1 ? `They differ: ${listed}. ` : "";
   const id = `body-${field}`;
   return html`
     <div class="slider">

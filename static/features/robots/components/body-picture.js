@@ -2,7 +2,7 @@
 // or by keys.
 import { signal } from "@preact/signals";
 import { useRef } from "preact/hooks";
-import { told } from "../body-editor.js";
+import { previewAnswer } from "../body-editor.js";
 import { html } from "../../../js/components/elements.js";
 
 /** @import { Preview } from "../../../js/types.js" */
@@ -30,7 +30,7 @@ function seen([x, y, z]) {
   return [right, -away * Math.sin(down) - z * Math.cos(down), -away * Math.cos(down) + z * Math.sin(down)];
 }
 
-/** The corners of the torso from above, in the robot frame. @param {Preview} known @returns {number[][]} */
+/** The corners of the torso from above, in the robot frame. @param {Preview} preview @returns {number[][]} */
 function outline({ built, forward_deg }) {
   const { torso_length_m: long, torso_width_m: wide, torso_radius_m: radius } = built;
   const corners = long && wide
@@ -44,9 +44,9 @@ function outline({ built, forward_deg }) {
 }
 
 export function BodyPicture() {
-  const known = told.value?.known;
+  const preview = previewAnswer.value?.preview;
   const from = useRef(/** @type {{ x: number, turn: number } | null} */ (null));
-  if (!known) return null;
+  if (!preview) return null;
   /** @param {PointerEvent & { currentTarget: Element }} event */
   const onDown = ({ button, clientX, pointerId, currentTarget }) => {
     if (button !== 0) return;
@@ -72,16 +72,16 @@ export function BodyPicture() {
       aria-valuetext=${`${Math.round(degrees)}°, anticlockwise from behind`} title="Drag, or arrow keys, to turn it"
       onPointerDown=${onDown} onPointerMove=${onMove} onPointerUp=${onUp} onLostPointerCapture=${onUp}
       onKeyDown=${onKeyDown}>
-      <${Robot} known=${known} />
+      <${Robot} preview=${preview} />
     </div>
   `;
 }
 
-/** @param {{ known: Preview }} props */
-function Robot({ known }) {
-  const { built, legs } = known;
+/** @param {{ preview: Preview }} props */
+function Robot({ preview }) {
+  const { built, legs } = preview;
   const [half, ground_m] = [Number(built.torso_half_height_m), -Number(built.body_height_m)];
-  const corners = outline(known);
+  const corners = outline(preview);
   const isBox = Boolean(built.torso_length_m);
   const standing = legs.filter(({ links_m }) => links_m !== null);
   const reach_m = Math.max(...corners.flat().map(Math.abs), ...standing.flatMap(({ links_m }) =>

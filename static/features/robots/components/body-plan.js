@@ -2,7 +2,7 @@
 // a pointer or by keys.
 import { useRef } from "preact/hooks";
 import {
-  body, chooseLeg, chosenLeg, endChange, followerOf, impossibleAt, moveBy, moveTo, told,
+  body, chooseLeg, chosenLeg, endChange, followerOf, impossibleAt, moveBy, moveTo, previewAnswer,
 } from "../body-editor.js";
 import { drawnLeg, extentOf, isBox, numbersOf, partsOf, sharedPart } from "../body.js";
 import { metres } from "../../../js/format.js";
@@ -71,7 +71,7 @@ export function BodyPlan() {
 
   return html`
     <div class="body-plan" ref=${frame} role="application" aria-label="Plan of the robot from above, forward up">
-      <${Drawing} shown=${now} half_m=${half_m} known=${told.value?.known ?? null} />
+      <${Drawing} shown=${now} half_m=${half_m} preview=${previewAnswer.value?.preview ?? null} />
       ${numbersOf(now).map((leg) => html`
         <${Mount} key=${leg} shown=${now} leg=${leg} half_m=${half_m} onMove=${onMove} onUp=${onUp}
           onDown=${(/** @type {any} */ event) => onDown(leg, event)} />
@@ -82,14 +82,14 @@ export function BodyPlan() {
 
 /** The colour of a leg by its group; none while the groups are not known. @param {number} leg */
 const styleOf = (leg) => {
-  const group = told.value?.known.legs[leg - 1]?.group;
+  const group = previewAnswer.value?.preview.legs[leg - 1]?.group;
   return group === undefined ? "pair-none" : `pair-${(group % COLORS) + 1}`;
 };
 
 /** A leg in words. @type {(shown: Body, leg: number) => string} */
 function inWords(shown, leg) {
   const { x_m, y_m, yaw_deg } = partsOf(shown, leg);
-  const group = told.value?.known.legs[leg - 1]?.group;
+  const group = previewAnswer.value?.preview.legs[leg - 1]?.group;
   const ofGroup = group === undefined ? "" : ` of group ${group + 1}`;
   const place = `${Math.abs(x_m)} m ${x_m < 0 ? "left" : "right"}, ${Math.abs(y_m)} m ${y_m < 0 ? "behind" : "ahead"}`;
   const words = impossibleAt(leg);
@@ -128,13 +128,13 @@ function Mount({ shown, leg, half_m, onDown, onMove, onUp }) {
   `;
 }
 
-/** @param {{ shown: Body, half_m: number, known: Preview | null }} props */
-function Drawing({ shown, half_m, known }) {
+/** @param {{ shown: Body, half_m: number, preview: Preview | null }} props */
+function Drawing({ shown, half_m, preview }) {
   const scale = EDGE / half_m;
   /** @param {Point} point */
   const at = ([right, ahead]) => `${(scale * right).toFixed(1)} ${(-scale * ahead).toFixed(1)}`;
   // The gait's forward direction as it is now, clockwise from up.
-  const forward = known ? shown.up_deg - known.forward_deg : 0;
+  const forward = preview ? shown.up_deg - preview.forward_deg : 0;
   return html`
     <svg viewBox=${`${-EDGE} ${-EDGE} ${2 * EDGE} ${2 * EDGE}`} aria-hidden="true">
       <${Torso} shown=${shown} scale=${scale} />
@@ -143,7 +143,7 @@ function Drawing({ shown, half_m, known }) {
         const { mount, coxa, foot } = drawnLeg(shown, leg);
         return html`
           <g key=${leg} class=${`${styleOf(leg)} ${leg === chosenLeg.value ? "chosen" : ""}`}>
-            ${known && html`<${Grid} at=${at(foot)} cells=${known.cells_m} scale=${scale} forward=${forward} />`}
+            ${preview && html`<${Grid} at=${at(foot)} cells=${preview.cells_m} scale=${scale} forward=${forward} />`}
             <path class="leg" d=${`M${at(mount)}L${at(foot)}`} />
             <path class="coxa" d=${`M${at(mount)}L${at(coxa)}`} />
             <circle class="foot" r="3" transform=${`translate(${at(foot)})`} />

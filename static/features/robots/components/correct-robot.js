@@ -84,7 +84,7 @@ const Stance = ({ found, keyframe, angles }) => html`
       <label for="correct-stance">It stands as in</label>
       <select id="correct-stance" onChange=${onText("keyframe")}>
         <option value="" selected=${keyframe === ""}>as found</option>
-        ${found.keyframes.map((one) => html`<option value=${one} selected=${one === keyframe}>${one}</option>`)}
+        ${found.keyframes.map((name) => html`<option value=${name} selected=${name === keyframe}>${name}</option>`)}
       </select>
     </div>
   `}
@@ -107,6 +107,6 @@ const onText = (name) => (/** @type {{ target: HTMLInputElement }} */ { target }
 
 /** In the order of the file. @param {string} foot */
 function toggleFoot(foot) {
-  const [chosen, known] = [fields.peek()?.feet ?? [], whole.peek()?.found?.feet ?? []];
-  setCorrection("feet", known.filter((one) => chosen.includes(one) !== (one === foot)));
+  const [chosen, feet] = [fields.peek()?.feet ?? [], whole.peek()?.found?.feet ?? []];
+  setCorrection("feet", feet.filter((name) => chosen.includes(name) !== (name === foot)));
 }

@@ -5,6 +5,6 @@ import { html } from "../../../js/components/elements.js";
 export const Notes = ({ title, sentences, isOpen = false }) => sentences.length > 0 && html`
   <details class="told" open=${isOpen}>
     <summary>${title}: ${sentences.length}</summary>
-    <ul>${sentences.map((one) => html`<li key=${one}>${one}</li>`)}</ul>
+    <ul>${sentences.map((sentence) => html`<li key=${sentence}>${sentence}</li>`)}</ul>
   </details>
 `;

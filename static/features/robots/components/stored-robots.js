@@ -23,7 +23,7 @@ export const StoredRobots = () => html`
     </div>
     <div class="robots-main">
       ${isOperator.value && html`<${FromFile} />`}
-      ${taken.value.map((one) => html`<${Taken} key=${one.key} one=${one} />`)}
+      ${taken.value.map((file) => html`<${Taken} key=${file.key} one=${file} />`)}
       ${storedRobots.value.length
         ? html`<ul class="robots-list">
             ${storedRobots.value.map((robot) => html`<${Stored} key=${robot.id} robot=${robot} />`)}
