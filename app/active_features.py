@@ -13,6 +13,7 @@ from app.feature import Feature, blaming, hidden_ids
 from app.installed_features import Catalogue
 from app.jobs.queue import Owner
 from app.setting_fields import PREFIX
+from app.storage.database.engine import Database
 from app.storage.database.migration import migrate_feature
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import InvalidInput
@@ -51,9 +52,7 @@ class Features:
         self._features: dict[str, Feature] = {}
         self._hiding: list[Feature] = []
         """Those that hide runs, which are asked of each event for each client."""
-        for feature in self.classes:
-            if feature.tables is not None and feature.migrations is not None:
-                migrate_feature(store.database, feature.name, feature.migrations, feature.tables)
+        migrate_tables(self.classes, store.database)
         self._left_out = _LeftOut(catalogue.left_out, store)
         keep_named_robots(catalogue, store)
 
@@ -159,6 +158,19 @@ class Features:
                 yield from feature.metrics()
             except Exception:
                 _logger.exception("the feature %s has no metrics", feature.name)
+
+
+def migrate_tables(classes: Iterable[type[Feature]], database: Database) -> None:
+    """Bring the tables of features to this version.
+
+    Raises:
+        DamagedFile: if a table is missing.
+        InvalidInput: if a newer version of a feature made its tables.
+        StorageFailed: if the database is unavailable.
+    """
+    for feature in classes:
+        if feature.tables is not None and feature.migrations is not None:
+            migrate_feature(database, feature.name, feature.migrations, feature.tables)
 
 
 def _check_names(classes: Iterable[type[Feature]]) -> None:

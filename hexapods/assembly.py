@@ -264,13 +264,9 @@ def sensor_noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
 
 def _offered_by(config: TrainingConfig) -> dict[str, Any]:
     """Return what a training offers to its agent's constructor: its fields and the settings."""
-    declared = agent_settings(config.agent)
-    # Earlier versions stored the settings of Q-learning with every agent.
-    own = {name: value for name, value in config.settings.items() if name in declared}
-    settings = complete(declared, own, config.agent)
     return {
         **{name: value for name, value in vars(config).items() if name not in _NOT_OFFERED},
-        **settings,
+        **complete(agent_settings(config.agent), config.settings, config.agent),
     }
 
 

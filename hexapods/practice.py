@@ -288,7 +288,7 @@ def evaluate(
         raise InvalidInput(f"{name} walks with what it has learned: give its training")
     if trained is not None:
         like = {"steps": trained.config.steps, "tolerance": trained.config.tolerance}
-        given = {**_own_settings(trained.config), **like, **given}
+        given = {**trained.config.settings, **like, **given}
     config = _config(name, trained, given)
     learner = build_learner(config)
     if trained is not None:
@@ -406,9 +406,3 @@ def _config(name: str, trained: Training | None, given: Mapping[str, Any]) -> Tr
         like = trained.config
         rest = {"observation": like.observation, "seed": like.seed, **rest}
     return training_config(name, **read_walk(walk, like), **rest)
-
-
-def _own_settings(config: TrainingConfig) -> dict[str, Any]:
-    """Return the settings of a training's agent; earlier versions stored those of others too."""
-    declared = agent_settings(config.agent)
-    return {name: value for name, value in config.settings.items() if name in declared}

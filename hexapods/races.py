@@ -375,8 +375,8 @@ def race_from_bytes(data: bytes, name: str) -> Race:
     """
     try:
         arrays = read_arrays(data)
-        digest = arrays.pop(_DIGEST, None)  # earlier versions wrote none
-        if digest is not None and str(digest) != digest_of(arrays):
+        digest = str(arrays.pop(_DIGEST))
+        if digest != digest_of(arrays):
             raise DamagedFile(f"{name} is damaged: its contents do not match its checksum")
         config = from_json(RaceConfig, json.loads(str(arrays.pop(CONFIG))))
         recording = race_recording(arrays)

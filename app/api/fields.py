@@ -250,7 +250,7 @@ def given_settings(body: SettingsBody) -> dict[str, Any]:
 
 
 def _nested_form(body: type[Body], unknown: Mapping[str, Any]) -> str | None:
-    """Return where settings belong that were given as fields, as before 0.2; None if none were."""
+    """Return the error of settings that are given as fields, with their place; None if none are."""
     settings = body.model_fields.get("settings")
     kind = None if settings is None else settings.annotation
     if not (isinstance(kind, type) and issubclass(kind, SettingsBody)):
@@ -258,7 +258,7 @@ def _nested_form(body: type[Body], unknown: Mapping[str, Any]) -> str | None:
     valid = kind.model_fields
     flat = {name: value for name, value in unknown.items() if name in valid}
     nested = json.dumps({"settings": flat})[1:-1][:500]
-    return f"settings are a member of their own since 0.2: {nested}" if flat else None
+    return f"the settings of an agent are a member of their own: {nested}" if flat else None
 
 
 def one_of(models: Mapping[str, type[Any]], tag_of: Callable[[Any], str]) -> Any:

@@ -83,14 +83,10 @@ def checked_table(
 def check_settings(config: TrainingConfig) -> None:
     """Check that the settings of a training are valid; its agent must be registered.
 
-    Settings of the default agent are ignored: earlier versions stored them with every agent.
-
     Raises:
         UnknownName, InvalidInput: if they are not.
     """
-    declared, others = agent_settings(config.agent), agent_settings(TrainingConfig.agent)
-    given = {k: v for k, v in config.settings.items() if k in declared or k not in others}
-    complete(declared, given, config.agent)
+    complete(agent_settings(config.agent), config.settings, config.agent)
 
 
 def check_change(change: Mapping[str, Any], agent: str) -> None:

@@ -60,7 +60,7 @@ class AddedKind(RunKind, ABC):
 
     @abstractmethod
     def has_made_name(self, run: "Run") -> bool:
-        """Whether the name of a run is one that was made of its config, here or earlier."""
+        """Whether the name of a run is the one that is made of its config."""
 
     @abstractmethod
     def task(self, run: "Run", store: "RunStore") -> Any:

@@ -327,7 +327,7 @@ class LinearModel:
         Raises:
             ValueError: if it is of another number of groups or cells.
         """
-        own, state = self.state(), _without_twins(state)
+        own = self.state()
         if not own.keys() <= state.keys():
             raise ValueError("it was learned with another order of the groups")
         for name, array in own.items():
@@ -392,19 +392,6 @@ class LinearModel:
             or last_group not in range(len(visits))
         ):
             raise ValueError("its counters are out of range")
-
-
-def _without_twins(state: AgentState) -> AgentState:
-    """Return a state of two groups as it is written now.
-
-    Earlier versions had two policies for its one order, which did the same.
-    """
-    if len(state["visits"]) != 2 or len(state["earned"]) != 3:
-        return state
-    forth, back, measured = state["earned"]
-    deciding, decided, last_group = state["deciding"].tolist()
-    now = np.array([max(0, deciding - 1), decided, last_group], np.int64)
-    return {**state, "earned": np.array([forth + back, measured]), "deciding": now}
 
 
 def _without_illegal(values: FloatArray, observation: Cells) -> FloatArray:

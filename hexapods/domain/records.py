@@ -144,7 +144,7 @@ def to_json(record: Any) -> dict[str, Any]:
 
 
 def from_json(kind: type[T], data: Any, **how: Any) -> T:
-    """Parse the output of `to_json`; fields that earlier versions did not have may be left out.
+    """Parse the output of `to_json`; fields with defaults may be left out.
 
     Args:
         kind: class of the record.

@@ -200,8 +200,6 @@ UNDISTURBED = World()
 def check_ends(disturbances: Iterable[Disturbance], steps: int) -> None:
     """Check what a user asks for: that what ends does so in the run, of so many steps.
 
-    Only of new requests: earlier versions stored later ends, which mean the same as none.
-
     Raises:
         InvalidInput: if not.
     """

@@ -46,7 +46,6 @@ FIGURE4_BLOCKS = 8
 SUMMARY = "summary.json"
 """File of a report: statistics and claims computed from the trials so far."""
 SUMMARY_FORMAT = 2
-"""In the first format, of versions before 0.2, the config has settings beside its other fields."""
 REPORT = "report.html"
 """The report as one self-contained page."""
 TRIALS_TABLE = "trials.csv"

@@ -18,17 +18,14 @@ from hexapods.experiments.config import SUMMARY, ExperimentConfig, by_option
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.worker import Outcome, difference, versions
 from hexapods.files import is_disk_full, lock_file
-from hexapods.runs.version_1 import nested_config
 
 FORMAT = 2
-"""Format of the header; 1, of versions before 0.2, is read too."""
+"""Format of the header."""
 TRIALS = "trials.jsonl"
 """JSON lines, append-only: a header, then one line per trial."""
 
 _SYNC_S = 0.5
 _GROWING = ("seeds", "candidates")
-_EARLIER_KINDS = {"ExperimentConfig": "experiment", "TuningConfig": "tuning"}
-"""Kinds by what earlier versions wrote; the first of them wrote none."""
 _CHOOSE = "choose another folder"
 
 
@@ -117,7 +114,7 @@ class ResultsFolder(Progress):
             if "format" in head and all(
                 isinstance(head[name], dict) for name in ("versions", "config")
             ):
-                return _converted(head)
+                return dict(head)
         except (KeyError, TypeError, ValueError):
             pass
         raise DamagedFile(
@@ -168,17 +165,6 @@ class ResultsFolder(Progress):
                 "trial is run again"
             ) from error
         super().add(outcome)
-
-
-def _converted(head: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a header as this version writes it; the classes of configs were kinds before."""
-    kind, config = str(head.get("kind", ExperimentConfig.kind)), head["config"]
-    if kind == "TuningConfig":
-        names = {"trials": "candidates"}
-        config = {names.get(name, name): value for name, value in config.items()}
-    if head["format"] == 1:
-        head, config = {**head, "format": FORMAT}, nested_config(config)
-    return {**head, "kind": _EARLIER_KINDS.get(kind, kind), "config": config}
 
 
 @contextmanager

@@ -195,9 +195,7 @@ def trial_seed(seed: int, setting: int, seed_number: int) -> int:
 
 def _settings(config: ExperimentConfig) -> list[TrialSetting]:
     learners, references, in_one_go, timed = [], [], [], []
-    # Earlier versions stored the settings of the default agent with every experiment.
-    agents = (*config.agents, *RIVALS, TrainingConfig.agent)
-    own = {agent: agent_settings(agent) for agent in agents}
+    own = {agent: agent_settings(agent) for agent in (*config.agents, *RIVALS)}
     for name in config.settings:
         if not any(name in settings for settings in own.values()):
             raise UnknownName("setting", name, dict.fromkeys(chain.from_iterable(own.values())))

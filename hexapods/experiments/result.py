@@ -33,7 +33,7 @@ class ExperimentResult:
     """Result of an experiment; `files` are those of its report.
 
     `shared_machine`: whether other runs computed beside it, which slows what is timed. `finding`:
-    what came of it, in a sentence; empty where its claims say it, and of 0.1.
+    what came of it, in a sentence; empty where its claims say it.
     """
 
     trials: TrialCounts

@@ -92,7 +92,7 @@ class TrialResult:
         """Convert to plain types; inverse of `from_json`."""
         data = asdict(self)
         if not self.earned_m:
-            del data["earned_m"]  # as in earlier versions
+            del data["earned_m"]
         return data
 
     @classmethod

@@ -1,7 +1,7 @@
 """Training loop and race loop; independent of web, database and job processes.
 
 - `config` has the walking problem and the validated configs of trainings, `lane` and `race_config`
-  those of races; `version_1` reads configs of before 0.2.
+  those of races.
 - `training` is the training loop with its evaluations, `racing` the race loop; both yield
   `records`. `walker` combines a simulator, its current state and an agent. `seeding` spawns
   independent random generators from one seed.

@@ -120,7 +120,7 @@ class RaceResult:
     """Result of a race, by lane.
 
     `recording_sha256` is a hash of all steps without the times of decisions, the same wherever the
-    race is repeated; null if it was raced by an earlier version. `shared_machine`: whether other
+    race is repeated. `shared_machine`: whether other
     runs computed beside it, which slows its wall clock.
     """
 

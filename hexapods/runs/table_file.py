@@ -1,5 +1,6 @@
 """Random-access reader of a Q-table file: reads row by row, in constant memory."""
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import IO, Any
 
@@ -9,7 +10,7 @@ from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.grid import FootGrid
 from hexapods.runs.npz_slices import NpzSlices
-from hexapods.runs.tables import FORMAT, read_meta, table_arrays
+from hexapods.runs.tables import FORMAT, table_arrays
 
 
 class TableFile:
@@ -34,7 +35,7 @@ class TableFile:
         """
         try:
             self._slices = NpzSlices(file)
-            self.meta: Mapping[str, Any] = read_meta(str(self._slices.rows("meta")))
+            self.meta: Mapping[str, Any] = json.loads(str(self._slices.rows("meta")))
             if self.meta["format"] != FORMAT:
                 raise ValueError(f"it has format {self.meta['format']}, not {FORMAT}")
             names = table_arrays({name.removeprefix("agent.") for name in self._slices.arrays})

@@ -34,10 +34,9 @@ from hexapods.runs import seeding
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.recording import Arrays
 from hexapods.runs.training import Learner
-from hexapods.runs.version_1 import nested_change, nested_config
 
 FORMAT = 2
-"""Format of the metadata; of 1, of versions before 0.2, is read too."""
+"""Format of the metadata."""
 MEDIA_TYPE = "application/x-npz"
 _MAX_ARRAYS = 10_000
 """Arrays of a file: more than any has that this product writes."""
@@ -108,11 +107,10 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
         IllegalAction: if the stored next action is not legal in the restored state.
     """
     walker, meta = learner.walker, checkpoint.meta
-    # Earlier versions knew no disturbances.
-    walker.simulator.world = world(meta.get("disturbances", ()))
-    learner.measured_in = world(meta.get("measured_in", ()))
-    learner.fell_at_step = meta.get("fell_at_step")
-    learner.newest_epsilon = meta.get("newest_epsilon", 0.0)
+    walker.simulator.world = world(meta["disturbances"])
+    learner.measured_in = world(meta["measured_in"])
+    learner.fell_at_step = meta["fell_at_step"]
+    learner.newest_epsilon = meta["newest_epsilon"]
     walker.agent.load(checkpoint.part(_AGENT))
     walker.set_state(walker.simulator.load(checkpoint.part(_STATE)))
     seeding.load(learner.rng, meta["rng"])
@@ -275,7 +273,7 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
         members = read_arrays(data)
         digest = str(members.pop("digest"))
         is_intact = digest == digest_of(members)
-        meta = read_meta(str(members.pop("meta")))
+        meta = json.loads(str(members.pop("meta")))
         is_supported = meta["format"] == FORMAT
     except Exception as error:  # zipfile and NumPy document no complete list of exceptions
         raise DamagedFile(f"{name} is not a Q-table of this product: {error}") from error
@@ -284,20 +282,6 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
     if not is_supported:
         raise DamagedFile(f"{name} has format {meta['format']}; this version reads {FORMAT}")
     return Checkpoint(meta, members)
-
-
-def read_meta(text: str) -> dict[str, Any]:
-    """Parse the metadata of a file, and return it as this version writes it.
-
-    Raises:
-        KeyError, TypeError, ValueError: if it is not that of a table.
-    """
-    meta: dict[str, Any] = json.loads(text)
-    if meta["format"] == 1:
-        meta |= {"format": FORMAT, "config": nested_config(meta["config"])}
-        if "changes" in meta:
-            meta["changes"] = [nested_change(one) for one in meta["changes"]]
-    return meta
 
 
 def read_arrays(data: bytes) -> Arrays:

@@ -242,22 +242,6 @@ def test_of_two_groups_there_is_one_order() -> None:
     assert agent.state()["earned"].shape == (2, 2)
 
 
-def test_a_state_of_two_groups_from_an_earlier_version_is_loaded() -> None:
-    """It has two policies for the one order, whose records are those of one."""
-    agent = LinearModel(TRIPOD, Plan(((0.0, 0.0),) * 2))
-    agent.act((0, 0), legal_actions((0, 0), 5))
-    now = agent.state()
-    earned = np.array([[2.0, 0.02], [1.0, 0.01], [4.0, 0.03]])
-    earlier = {**now, "earned": earned, "deciding": np.array([2, 12, 1])}
-    LinearModel.check_state(earlier)
-
-    agent.load(earlier)
-
-    assert np.allclose(agent.state()["earned"], [[3.0, 0.03], [4.0, 0.03]])
-    assert agent.state()["deciding"].tolist() == [1, 12, 1]
-    LinearModel.check_state(agent.state())
-
-
 @pytest.mark.parametrize(
     ("robot", "gait", "expected_m"),
     [

@@ -129,7 +129,6 @@ def test_body_that_is_not_json_is_refused(api: Api) -> None:
 
 @needs("what_if", "experiments")
 def test_flat_settings_are_refused_with_the_nested_form(api: Api) -> None:
-    """Versions before 0.2 took them so."""
     for path, body in (
         ("/trainings", {**WALK, "alpha": 0.5, "gamma": 0.8}),
         ("/what-if", {**WALK, "alpha": 0.5, "gamma": 0.8}),

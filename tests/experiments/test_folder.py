@@ -158,24 +158,15 @@ def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
 def test_results_of_another_version_are_refused(folder: Path) -> None:
     change_head(folder, lambda head: head["versions"].update(mujoco="3.3.7"))  # type: ignore[attr-defined]
     assert "has results of mujoco 3.3.7 instead of 4.0.0" in refusal(folder)
+    change_head(folder, lambda head: head.update(format=1))
+    assert "has results in format 1, and this version writes format 2" in refusal(folder)
     change_head(folder, lambda head: head.update(format=3))
     assert "has results in format 3, and this version writes format 2" in refusal(folder)
 
 
-@pytest.mark.parametrize("earlier", [None, "ExperimentConfig"])
-def test_kind_of_results_is_named_and_that_of_earlier_versions_is_read(
-    earlier: str | None, folder: Path, outcomes: list[Outcome]
-) -> None:
+def test_results_of_another_kind_are_refused(folder: Path) -> None:
     head = json.loads((folder / TRIALS).read_text("utf-8").splitlines()[0])
     assert head["kind"] == "experiment"
-
-    def rename(head: dict[str, object]) -> None:
-        head.pop("kind")
-        head.update({} if earlier is None else {"kind": earlier})
-
-    change_head(folder, rename)
-    with open_results(folder, CONFIG) as opened:
-        assert opened.done == len(outcomes)
     change_head(folder, lambda head: head.update(kind="tuning"))
     assert refusal(folder).endswith("has results of another experiment; choose another folder")
 

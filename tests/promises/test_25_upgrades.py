@@ -1,9 +1,10 @@
-"""Promise 25: upgrades keep data, from every released schema, on SQLite and on PostgreSQL."""
+"""Promise 25: upgrades keep data, on SQLite and PostgreSQL; data of before 1.0 is refused."""
 
+import hashlib
 import shutil
-import sqlite3
 import zipfile
-from contextlib import closing
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,139 +12,136 @@ import psycopg
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
-from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, text
 
 import hexapods
-from app.events.run_view import run_view
+from app.active_features import migrate_tables
+from app.features.experiments.feature import ExperimentFeature
 from app.features.experiments.trial_rows import Trials
+from app.installed_features import load
+from app.settings import Settings
 from app.storage.database import migration
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
-from app.storage.database.migration import migrate, newest_revision
-from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.migration import migrate, migrate_feature, newest_revision
+from app.storage.database.opening import DATABASE_FILE, open_store
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
 from app.storage.run_ids import RunIds
+from hexapods.domain.errors import DamagedFile, InvalidInput
 from tests.features.archives.exported import import_run
 from tests.postgresql import PostgresServer
-from tests.promises.released import sample
+from tests.promises import sample_runs
 from tests.storage.all_tables import ALL_METADATA
 from tests.storage.stores import BACKENDS, TRIALS, database_url, opened, training
 
 pytestmark = pytest.mark.test
 
-FOLDER = Path(sample.__file__).parent
-SCRIPTS = ScriptDirectory(str(Path(migration.__file__).with_name("migrations")))
-REVISIONS = [script.revision for script in SCRIPTS.walk_revisions()]
+VERSION_0_1 = Path(__file__).with_name("version_0_1.zip")
+"""A data folder, archives and a table of a version before 1.0."""
+CORE = Path(migration.__file__).with_name("migrations")
 
 on_both = pytest.mark.parametrize("backend", BACKENDS)
 
 
-def load(dump: Path, folder: Path, url: str | None) -> None:
-    """Restore data folder and database from a dump."""
-    if url is None:
-        with closing(sqlite3.connect(folder / DATABASE_FILE)) as file:
-            file.executescript(dump.read_text())
-    else:
-        with psycopg.connect(url) as server:
-            server.execute(dump.read_bytes())
-    database = Database(database_engine(folder, url))
-    files = "SELECT about.id, artifacts.file FROM about, artifacts"
-    owner, name = database.read(lambda c: tuple(c.execute(text(files)).one()))
-    database.close()
-    (folder / "artifacts" / owner).mkdir(parents=True)
-    (folder / "artifacts" / owner / name).write_bytes(sample.FILE)
+@contextmanager
+def database_in(folder: Path, url: str | None) -> Iterator[Database]:
+    engine: Engine = (
+        sqlite_engine(folder / DATABASE_FILE) if url is None else postgresql_engine(url)
+    )
+    with closing(Database(engine)) as database:
+        yield database
 
 
-def database_engine(folder: Path, url: str | None) -> Engine:
-    return sqlite_engine(folder / DATABASE_FILE) if url is None else postgresql_engine(url)
-
-
-def rows_in(table: str, database: Database) -> int:
-    count = text(f"SELECT count(*) FROM {table}")
-    found: int = database.read(lambda connection: connection.execute(count).scalar_one())
-    return found
-
-
-def check(store: RunStore, revision: str) -> None:
-    runs = [*sample.RUNS, *([sample.EXPERIMENT] if revision >= "0002" else [])]
+def check_sample(store: RunStore) -> None:
+    first, *others = sample_runs.RUNS
+    runs = [replace(first, **sample_runs.ANNOTATIONS), *others, sample_runs.EXPERIMENT]
     assert [run.id for run in store.list().items] == [run.id for run in reversed(runs)]
-    if revision >= "0004":
-        runs[0] = replace(runs[0], **sample.ANNOTATIONS)
     for run in runs:
         assert store.get(run.id) == run
-    if revision >= "0002":
-        assert Trials(store.database).get(sample.EXPERIMENT.id) == TRIALS
-    first = sample.RUNS[0].id
-    assert store.curves.get(first) == sample.CURVE
-    assert store.artifact(first, TABLE) == sample.FILE
+    assert Trials(store.database).get(sample_runs.EXPERIMENT.id) == TRIALS
+    assert store.curves.get(first.id) == sample_runs.CURVE
+    assert store.artifact(first.id, TABLE) == sample_runs.FILE
+
+
+def write_revision(folder: Path, before: str, revision: str, *upgrade: str) -> None:
+    """Write a made-up next revision, with the lines of its `upgrade`."""
+    lines = "".join(f"    {line}\n" for line in upgrade)
+    (folder / f"{revision}.py").write_text(
+        "from alembic import op\n"
+        f"revision, down_revision = {revision!r}, {before!r}\n"
+        f"def upgrade():\n{lines}"
+    )
 
 
 @on_both
-@pytest.mark.parametrize("revision", REVISIONS)
-def test_every_released_schema_migrates(
-    revision: str, backend: str, postgresql: PostgresServer, tmp_path: Path
+def test_a_next_version_migrates_the_core_and_each_feature(
+    backend: str, postgresql: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A made-up next version has one more column in `runs` and in `trials`, filled from others."""
+    core, trials = tmp_path / "core", tmp_path / "trials"
+    assert ExperimentFeature.migrations is not None
+    assert ExperimentFeature.tables is not None
+    shutil.copytree(CORE, core)
+    shutil.copytree(ExperimentFeature.migrations, trials)
+    write_revision(
+        core / "versions",
+        newest_revision(),
+        "core_9999",
+        "op.execute('ALTER TABLE runs ADD COLUMN title VARCHAR')",
+        "op.execute(\"UPDATE runs SET title = kind || ' ' || id\")",
+    )
+    write_revision(
+        trials,
+        "experiments_0001",
+        "experiments_9999",
+        "op.execute('ALTER TABLE trials ADD COLUMN compute_ms DOUBLE PRECISION')",
+        "op.execute('UPDATE trials SET compute_ms = 1000 * compute_s')",
+    )
     with database_url(backend, postgresql) as url:
-        load(FOLDER / f"{revision}.{backend}.sql", tmp_path, url)
-        for _ in range(2):
-            with opened(tmp_path, url) as store:
-                check(store, revision)
         with opened(tmp_path, url) as store:
-            store.create(training("z"))
-            store.delete(sample.RUNS[0].id)
-            if revision >= "0002":
-                store.delete(sample.EXPERIMENT.id)
-        database = Database(database_engine(tmp_path, url))
-        for table in ("evaluations", "trials", "artifacts"):
-            assert rows_in(table, database) == 0
-        database.close()
-
-
-def test_a_data_folder_of_version_0_1_opens_with_all_its_runs(tmp_path: Path) -> None:
-    """Settings stood beside the other fields then: in rows, tables, checkpoints and archives."""
-    with zipfile.ZipFile(FOLDER / "version_0_1.zip") as archive:
-        archive.extractall(tmp_path)
-    with opened(tmp_path / "data", None) as store:
-        views = {run.kind: run_view(run) for run in store.list().items if run.kind is not None}
-        rates = {"alpha": 0.3, "gamma": 0.9, "epsilon_start": 1.0, "epsilon_end": 0.0}
-        assert views["training"]["config"]["settings"] == rates
-        changes = [{"step": 3, "settings": {"alpha": 0.25}}, {"step": 9, "pace": "max"}]
-        assert views["training"]["changes"] == changes
-        lanes = views["race"]["config"]["lanes"]
-        assert [(lane["agent"], lane["settings"]) for lane in lanes] == [
-            ("q-learning", {}),
-            ("greedy", {}),
-        ]
-        lists = {name: [value] for name, value in rates.items()}
-        assert views["experiment"]["config"]["settings"] == lists
-
-        # Each archive of that version is taken in, and is the run that the data folder has.
-        with opened(tmp_path / "new", None) as other:
-            ids = RunIds()
-            for file in sorted((tmp_path / "archives").iterdir()):
-                imported = import_run(other, file.read_bytes(), ids, file.name)
-                assert imported == store.get(imported.id)
-
-        practised = hexapods.load(tmp_path / "q.npz")
-        assert isinstance(practised, hexapods.Training)
-        assert practised.config == store.get(views["training"]["id"]).config
-        assert hexapods.evaluate(practised) == views["training"]["result"]["distance_m"]
+            sample_runs.put(store)
+        with monkeypatch.context() as patch:
+            patch.setattr(migration, "SCRIPT_LOCATION", str(core))
+            for _ in range(2):
+                with open_store(Settings(data=tmp_path, database_url=url)) as store:
+                    migrate_feature(store.database, "experiments", trials, ExperimentFeature.tables)
+                    check_sample(store)
+            with database_in(tmp_path, url) as database:
+                titles = database.read(
+                    lambda c: c.execute(text("SELECT title FROM runs ORDER BY id")).scalars().all()
+                )
+                assert titles == [
+                    f"{run.kind} {run.id}" for run in (*sample_runs.RUNS, sample_runs.EXPERIMENT)
+                ]
+                times_ms = database.read(
+                    lambda c: c.execute(text("SELECT compute_ms FROM trials")).scalars().all()
+                )
+                assert sorted(times_ms) == sorted(1000 * trial["compute_s"] for trial in TRIALS)
+        # This version knows neither revision, and changes nothing.
+        with (
+            pytest.raises(InvalidInput, match="a newer version of Racing Hexapods"),
+            opened(tmp_path, url),
+        ):
+            pass
+        folder, tables = ExperimentFeature.migrations, ExperimentFeature.tables
+        refused = pytest.raises(InvalidInput, match="a newer version of the feature experiments")
+        with database_in(tmp_path, url) as database, refused:
+            migrate_feature(database, "experiments", folder, tables)
 
 
 @on_both
 def test_the_migrations_result_in_the_current_schema(
     backend: str, postgresql: PostgresServer, tmp_path: Path
 ) -> None:
-    with database_url(backend, postgresql) as url:
-        database = Database(database_engine(tmp_path, url))
-        migrate(database)
+    with database_url(backend, postgresql) as url, opened(tmp_path, url) as store:
+        migrate(store.database)
+        migrate_tables(load().classes, store.database)
 
-        def differences(connection: Connection) -> object:
-            return compare_metadata(MigrationContext.configure(connection), ALL_METADATA)  # type: ignore[arg-type]  # it takes several
+        def differences(connection: Connection) -> list[object]:
+            found = compare_metadata(MigrationContext.configure(connection), ALL_METADATA)  # type: ignore[arg-type]  # it takes several
+            return [change for change in found if "alembic_version_" not in str(change)]
 
-        assert database.read(differences) == []
-        database.close()
+        assert store.database.read(differences) == []
 
 
 @on_both
@@ -152,27 +150,65 @@ def test_a_failed_migration_is_rolled_back(
 ) -> None:
     """A made-up further migration raises halfway."""
     broken = tmp_path / "migrations"
-    shutil.copytree(Path(migration.__file__).with_name("migrations"), broken)
-    (broken / "versions" / "schema_9999.py").write_text(
-        "from alembic import op\n"
-        f"revision, down_revision = '9999', '{newest_revision()}'\n"
-        "def upgrade():\n"
-        "    op.execute('ALTER TABLE runs ADD COLUMN half INTEGER')\n"
-        "    op.execute('UPDATE runs SET half = 1')\n"
-        "    raise RuntimeError('halfway')\n"
+    shutil.copytree(CORE, broken)
+    write_revision(
+        broken / "versions",
+        newest_revision(),
+        "core_9999",
+        "op.execute('ALTER TABLE runs ADD COLUMN half INTEGER')",
+        "op.execute('UPDATE runs SET half = 1')",
+        "raise RuntimeError('halfway')",
     )
     with database_url(backend, postgresql) as url:
         with opened(tmp_path, url) as store:
-            sample.put(store)
+            sample_runs.put(store)
         with monkeypatch.context() as patch:
             patch.setattr(migration, "SCRIPT_LOCATION", str(broken))
             with pytest.raises(RuntimeError, match="halfway"), opened(tmp_path, url):
                 pass
         with opened(tmp_path, url) as store:
-            check(store, newest_revision())
+            check_sample(store)
             store.create(training("z"))
 
 
-def test_every_schema_has_its_dumps() -> None:
-    dumps = {path.name for path in FOLDER.glob("*.sql")}
-    assert dumps == {f"{revision}.{backend}.sql" for revision in REVISIONS for backend in BACKENDS}
+def digests(folder: Path) -> Mapping[Path, str]:
+    return {
+        path: hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_data_of_a_version_before_1_0_is_refused_and_left_as_it_is(tmp_path: Path) -> None:
+    with zipfile.ZipFile(VERSION_0_1) as archive:
+        archive.extractall(tmp_path / "before")
+    before = digests(tmp_path / "before")
+    with (
+        pytest.raises(InvalidInput, match=r"before 1\.0 made this database .*left as it is"),
+        opened(tmp_path / "before" / "data", None),
+    ):
+        pass
+    with opened(tmp_path / "new", None) as store:
+        for file in sorted((tmp_path / "before" / "archives").iterdir()):
+            with pytest.raises(DamagedFile, match=r"has format 1, .* reads 2 alone"):
+                import_run(store, file.read_bytes(), RunIds(), file.name)
+        assert store.list().items == []
+    with pytest.raises(DamagedFile, match=r"has format 1; this version reads 2"):
+        hexapods.load(tmp_path / "before" / "q.npz")
+    after = digests(tmp_path / "before")
+    assert {path: after.get(path) for path in before} == before
+
+
+def test_a_database_of_a_version_before_1_0_is_refused_on_postgresql(
+    postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    with database_url("postgresql", postgresql) as url:
+        assert url is not None
+        with psycopg.connect(url) as server:
+            server.execute("CREATE TABLE alembic_version (version_num VARCHAR(32) PRIMARY KEY)")
+            server.execute("INSERT INTO alembic_version VALUES ('0010')")
+        with pytest.raises(InvalidInput, match="its schema is 0010"), opened(tmp_path, url):
+            pass
+        with psycopg.connect(url) as server:
+            tables = server.execute("SELECT tablename FROM pg_tables WHERE schemaname = 'public'")
+            assert tables.fetchall() == [("alembic_version",)]

@@ -21,6 +21,7 @@ from hexapods.assembly import build_learner
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.gait import GaitSpec
 from hexapods.domain.robot import robot
+from hexapods.domain.settings import SettingValues
 from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.tables import (
     FORMAT,
@@ -145,7 +146,7 @@ def test_table_fits_another_robot_and_simulator() -> None:
 
 
 def test_table_of_another_agent_is_refused() -> None:
-    wanderer = replace(CONFIG, agent="tests.own_agents:Restless")
+    wanderer = replace(CONFIG, agent="tests.own_agents:Restless", settings=SettingValues({}))
     foreign = trained(wanderer)
 
     with pytest.raises(TableMismatch, match="this is no Q-table: it lacks n, q, shape, where"):

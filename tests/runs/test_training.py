@@ -11,6 +11,7 @@ from hexapods.agents.q_learning import QLearning
 from hexapods.assembly import build_learner
 from hexapods.domain.disturbances import Limp, SensorNoise, Slope
 from hexapods.domain.errors import IllegalAction, InvalidInput
+from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import World
 from hexapods.runs import seeding
 from hexapods.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
@@ -355,7 +356,9 @@ def test_result_is_the_same_without_evaluations() -> None:
 
 
 def test_user_supplied_agent_trains_and_resumes() -> None:
-    config = replace(CONFIG, agent="tests.own_agents:Restless", steps=40)
+    config = replace(
+        CONFIG, agent="tests.own_agents:Restless", settings=SettingValues({}), steps=40
+    )
     learner, _ = run(config)
     state = learner.walker.agent.state()
     onward = build_learner(config, from_bytes(to_bytes(snapshot(learner, config)), "own.npz"))
@@ -367,7 +370,7 @@ def test_user_supplied_agent_trains_and_resumes() -> None:
 
 def test_illegal_action_raises_an_error_that_names_agent_and_action() -> None:
     with pytest.raises(IllegalAction, match=r"Cheat chose Action\(group=0, cell=0\).*in legal"):
-        run(replace(CONFIG, agent="tests.own_agents:Cheat"))
+        run(replace(CONFIG, agent="tests.own_agents:Cheat", settings=SettingValues({})))
 
 
 EVENTFUL = training_config(

@@ -1,13 +1,16 @@
 """Helpers for tests: stores on every database, and sample runs, configs and trials."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
+from app.active_features import migrate_tables
+from app.installed_features import load
 from app.settings import Settings
+from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.opening import DATABASE_FILE, open_store
 from app.storage.database.sqlite_file import create_file
 from app.storage.database.store import RunStore
@@ -105,8 +108,9 @@ def database_url(backend: str, server: PostgresServer | None) -> Iterator[str | 
 
 @contextmanager
 def opened(folder: Path, url: str | None) -> Iterator[RunStore]:
-    """Open the store of a server with this data folder and database URL."""
+    """Open the store of a server with this data folder and database URL, and features' tables."""
     with open_store(Settings(data=folder, database_url=url)) as store:
+        migrate_tables(load().classes, store.database)
         yield store
 
 
@@ -120,7 +124,10 @@ def temporary_store() -> Iterator[RunStore]:
 
 
 def copy_new_database(folder: Path) -> None:
-    """Make a SQLite database that no server has owned: migrations take longer than most tests."""
+    """Make a SQLite database that no server has owned, with the tables of core and features.
+
+    Migrations take longer than most tests.
+    """
     (folder / DATABASE_FILE).write_bytes(_new_database())
 
 
@@ -129,6 +136,8 @@ def _new_database() -> bytes:
     with TemporaryDirectory() as folder:
         path = Path(folder) / DATABASE_FILE
         create_file(path, lambda: False)
+        with closing(Database(sqlite_engine(path))) as database:
+            migrate_tables(load().classes, database)
         return path.read_bytes()
 
 

@@ -37,16 +37,15 @@ from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import check_lane
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.runs.results import RaceResult
-from hexapods.runs.version_1 import nested_change, nested_config
 
 FORMAT = 2
-"""Format of `run.json`; 1, of versions before 0.2, is read too."""
+"""Format of `run.json`."""
 MAX_JSON_BYTES = 64_000_000
 _MAX_PART_BYTES = 256_000  # of a config or a result
 _MAX_RUN_BYTES = 8_000_000  # of all but the curve
 _MAX_CHANGES = 10_000
-"""More than a run here may get (`app.jobs.jobs.MAX_CHANGES`): earlier versions had no limit, and
-changes that wait for acknowledgement at the same time may pass it by some."""
+"""More than `app.jobs.jobs.MAX_CHANGES`, which changes that wait for their acknowledgement at the
+same time may pass by some."""
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
 _Change = float | int | str | bool | dict[Name, float | int | str | bool | list[int]]
@@ -107,7 +106,7 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
     run_fields["result"] = None if run.result is None else to_json(run.result)
     for name in ("tags", "notes"):
         if not run_fields[name]:
-            del run_fields[name]  # as in earlier versions, which do not know them
+            del run_fields[name]
     document = {"format": FORMAT, "version": __version__, "run": run_fields, "curve": list(curve)}
     data = msgspec.json.format(msgspec.json.encode(document), indent=1)
     if len(data) > MAX_JSON_BYTES:
@@ -134,10 +133,10 @@ def read_run_json(
         if len(data) > MAX_JSON_BYTES:
             raise ValueError("it is too long")
         head = msgspec.json.decode(data, type=_Head)
-        if head.format not in (1, FORMAT):
+        if head.format != FORMAT:
             raise DamagedFile(
                 f"{label} has format {head.format}, of version {head.version[:40]!r}; this version "
-                f"({__version__}) reads 1 and {FORMAT}"
+                f"({__version__}) reads {FORMAT} alone"
             )
         # Of all that is in it only the curve may be long.
         curve_json = bytes(msgspec.json.decode(data, type=_OnlyCurve).curve)
@@ -148,7 +147,7 @@ def read_run_json(
         fields = msgspec.json.decode(rest, type=_File).run
         if fields.kind not in kinds:
             raise UnknownName("kind of run", fields.kind, kinds)
-        run = _run(fields, agents, is_first=head.format == 1)
+        run = _run(fields, agents)
         curve = read_curve(curve_json)
         _check(run, curve)
     except DamagedFile:
@@ -160,13 +159,10 @@ def read_run_json(
     return run, curve
 
 
-def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
-    """Check a run; `is_first`: it is of the first format, with settings beside other fields."""
-    given, changes = _decode(fields.config, dict[str, Any]), fields.changes
-    if is_first:
-        given, changes = nested_config(given), [nested_change(one) for one in changes]
+def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
+    """Check the fields of a run, and return it."""
     kind, added = run_kinds()[fields.kind], added_kind(fields.kind)
-    config = from_json(kind.config, given)
+    config = from_json(kind.config, _decode(fields.config, dict[str, Any]))
     if fields.done > fields.total:
         raise ValueError("its progress does not fit together")
     # First, as what follows imports the agents.
@@ -188,7 +184,7 @@ def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
     values |= {
         "config": config,
         "result": result,
-        "changes": tuple(changes),
+        "changes": tuple(fields.changes),
         "lane_training_ids": lanes,
     }
     return Run(**values)

@@ -7,10 +7,8 @@ ALPHABET = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 CODE_LENGTH = 8
 """So many that nobody guesses a code, however many are tried: a limit would be used up by one pupil
 for all of a class that shares an address."""
-OLD_CODE_LENGTH = 6
-"""Of rooms that an earlier version opened; they stay as they are until they end."""
-CODE = f"[{ALPHABET}]{{{CODE_LENGTH}}}|[{ALPHABET}]{{{OLD_CODE_LENGTH}}}"
-"""Regular expression of all codes."""
+CODE = f"[{ALPHABET}]{{{CODE_LENGTH}}}"
+"""Regular expression of a code."""
 Choose = Callable[[Sequence[str]], str]
 """Chooses one of several at random."""
 _FIRST = (

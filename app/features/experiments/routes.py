@@ -1,6 +1,5 @@
 """Routes of experiments: summary, trials, report and its files."""
 
-import json
 from typing import Annotated, Any, Literal
 
 from fastapi import Path, Query, Request
@@ -23,14 +22,13 @@ from app.features.experiments.response_models import (
 from app.features.experiments.stored_trials import trials_as_csv
 from app.features.experiments.trial_rows import Trials
 from app.features.experiments.trial_runs import trial_start
-from app.storage.artifact_file import ArtifactFile, chunks
+from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
 from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.records import to_json
 from hexapods.experiments.config import REPORT, SUMMARY, SUMMARY_FORMAT, ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
-from hexapods.runs.version_1 import nested_config
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
@@ -54,9 +52,6 @@ _FILE_SCHEMAS: dict[str, dict[str, Any]] = {
     "application/pdf": BINARY,
 }
 
-_FIRST_FORMAT = b'{"format": 1,'
-"""How a summary of a version before 0.2 begins."""
-
 router = run_routes("experiment", ExperimentView, ExperimentPage, changed_by=OPERATOR)
 
 
@@ -68,12 +63,7 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     summary = services.store.open_artifact(run_id, SUMMARY)
     if summary is None:
         return JSONResponse(_empty_summary(run))
-    if summary.read_at(0, len(_FIRST_FORMAT)) != _FIRST_FORMAT:
-        return file_response(summary, "application/json")
-    stored = json.loads(b"".join(chunks(summary)))
-    return JSONResponse(
-        {**stored, "format": SUMMARY_FORMAT, "config": nested_config(stored["config"])}
-    )
+    return file_response(summary, "application/json")
 
 
 @router.get(

@@ -14,9 +14,8 @@ from app.storage.database.store import RunStore
 from app.storage.run import Run
 from app.storage.run_kind import AddedKind, Rows
 from hexapods.domain.errors import HexapodError
-from hexapods.domain.text import counted
 from hexapods.experiments.config import SUMMARY, ExperimentConfig
-from hexapods.experiments.names import TITLES, experiment_name
+from hexapods.experiments.names import experiment_name
 from hexapods.experiments.result import ExperimentResult
 
 
@@ -31,12 +30,11 @@ class ExperimentKind(AddedKind):
 
     def has_made_name(self, run: Run) -> bool:
         config: ExperimentConfig = run.config
-        earlier = f"{TITLES[config.experiment]}, {counted(config.seeds, 'seed')}"
         try:
-            return run.name in (experiment_name(config), earlier)
+            return run.name == experiment_name(config)
         except HexapodError:
             # An agent whose settings it varies is not here: whoever added the run, named it.
-            return run.name == earlier
+            return False
 
     def task(self, run: Run, store: RunStore) -> ExperimentTask:
         rows = tuple(Trials(store.database).get(run.id))

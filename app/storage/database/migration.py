@@ -1,6 +1,7 @@
 """Schema migration: upgrade a database to the schema of this version with Alembic."""
 
 import logging
+from collections.abc import Iterable
 from pathlib import Path
 
 from alembic import command
@@ -17,21 +18,23 @@ CONNECTION = "connection"
 """Key of the open connection among the attributes of Alembic's config (see `migrations/env`)."""
 VERSION_TABLE = "version_table"
 """Likewise of the name of the table that has the revision."""
-_OWN_VERSION_TABLE = "alembic_version"
+_CORE_VERSION_TABLE = "alembic_version"
+_BEFORE_1_0 = frozenset(f"{number:04}" for number in range(1, 11))
+"""Revisions of the schemas before 1.0, whose data is not read."""
 
 
 def migrate(database: Database) -> None:
     """Upgrade the database to this version's schema in one transaction.
 
     Raises:
-        InvalidInput: if a newer version created it.
+        InvalidInput: if a newer version created it, or one before 1.0.
         StorageFailed: if the database is unavailable.
     """
     # Alembic logs two lines at INFO on every start.
     logging.getLogger("alembic").setLevel(logging.WARNING)
 
     def work(connection: Connection) -> None:
-        _refuse_newer(connection)
+        check_revisions(MigrationContext.configure(connection).get_current_heads())
         config = _config()
         config.attributes[CONNECTION] = connection
         command.upgrade(config, "head")
@@ -58,22 +61,21 @@ def migrate_feature(database: Database, name: str, folder: Path, tables: MetaDat
     logging.getLogger("alembic").setLevel(logging.WARNING)
 
     def work(connection: Connection) -> None:
-        version_table = f"{_OWN_VERSION_TABLE}_{name}"
+        version_table = f"{_CORE_VERSION_TABLE}_{name}"
         config = _config()
         config.set_main_option("version_locations", str(folder))
         config.attributes |= {CONNECTION: connection, VERSION_TABLE: version_table}
         options = {"version_table": version_table}
         heads = set(MigrationContext.configure(connection, opts=options).get_current_heads())
-        known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
-        if unknown := heads - known:
+        scripts = ScriptDirectory.from_config(config).walk_revisions()
+        if unknown := heads - {script.revision for script in scripts}:
             raise InvalidInput(
                 f"a newer version of the feature {name} made its tables (their schema is "
                 f"{', '.join(sorted(unknown))}); install that version, or leave the feature out by "
                 f"HEXAPODS_WITHOUT={name}"
             )
         command.upgrade(config, "head")
-        there = set(inspect(connection).get_table_names())
-        if missing := sorted(tables.tables.keys() - there):
+        if missing := sorted(tables.tables.keys() - set(inspect(connection).get_table_names())):
             raise DamagedFile(
                 f"the database has lost {', '.join(missing)} of the feature {name}; put a backup "
                 f"back, or start without the feature by HEXAPODS_WITHOUT={name}, which "
@@ -90,8 +92,8 @@ def check_current(connection: Connection) -> bool:
     Raises:
         InvalidInput: if it has the schema of another version.
     """
-    _refuse_newer(connection)
     heads = MigrationContext.configure(connection).get_current_heads()
+    check_revisions(heads)
     if heads and newest_revision() not in heads:
         raise InvalidInput(
             "an older version of Racing Hexapods made this database; start `hexapods serve` once, "
@@ -113,9 +115,22 @@ def _config() -> Config:
     return config
 
 
-def _refuse_newer(connection: Connection) -> None:
-    known = {script.revision for script in ScriptDirectory.from_config(_config()).walk_revisions()}
-    unknown = set(MigrationContext.configure(connection).get_current_heads()) - known
+def check_revisions(revisions: Iterable[str]) -> None:
+    """Check that this version can read the tables of the core with these revisions.
+
+    Raises:
+        InvalidInput: if a newer version made them, or one before 1.0.
+    """
+    released = {
+        script.revision for script in ScriptDirectory.from_config(_config()).walk_revisions()
+    }
+    unknown = set(revisions) - released
+    if unknown and unknown <= _BEFORE_1_0:
+        raise InvalidInput(
+            "a version of Racing Hexapods before 1.0 made this database (its schema is "
+            f"{', '.join(sorted(unknown))}), which this version does not read; it was left as it "
+            "is: open it with the version that made it, or choose another data folder or database"
+        )
     if unknown:
         raise InvalidInput(
             f"a newer version of Racing Hexapods made this database (its schema is "

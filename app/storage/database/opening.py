@@ -47,8 +47,8 @@ def open_store(
             which is possible after an outage of PostgreSQL; all writes fail from then on.
 
     Raises:
-        InvalidInput: if another server owns the database, a newer version created it, or the data
-            folder is not writable.
+        InvalidInput: if another server owns the database, a newer version created it or one before
+            1.0, or the data folder is not writable.
         DamagedFile: if the database is empty, or lacks tables.
         StorageFailed: if the database is damaged or unavailable.
     """
@@ -109,8 +109,8 @@ def _recover(store: RunStore) -> None:
 def _database(settings: Settings, disk_space: DiskSpace) -> Database:
     if settings.database_url is not None:
         return Database(postgresql_engine(settings.database_url))
-    disk_space.reserve()
     path = settings.data / DATABASE_FILE
     check_file(path, settings.data / ARTIFACTS_FOLDER)
+    disk_space.reserve()
     create_file(path, on_disk_full=disk_space.release)
     return Database(sqlite_engine(path), on_disk_full=disk_space.release)

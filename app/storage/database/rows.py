@@ -110,7 +110,7 @@ def _decode(row: Mapping[str, Any]) -> Run:
     parse = _config if len(row["config"]) <= _MAX_CACHED_CONFIG_CHARS else _config.__wrapped__
     values["config"] = config = parse(row["kind"], row["config"])
     if (result := _json("result", row["result"])) is not None:
-        # NaN, which earlier versions stored, is what was not measured.
+        # JSON has no NaN: what was not measured is null.
         values["result"] = from_json(kind.result, finite(result), extra="ignore")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")

@@ -49,7 +49,7 @@ RUNS = Table(
     Column("notes", PortableText, nullable=False, server_default=""),
     # Derived from the result, for sorting; NULL where there is none.
     Column("distance_m", Double),
-    # Whether it ran elsewhere, as far as this server knows: since 0008.
+    # Whether it ran elsewhere, as far as this server knows.
     Column("is_imported", Boolean, nullable=False, server_default=false()),
     Column("created_at", UtcTime, nullable=False),
     Column("started_at", UtcTime),

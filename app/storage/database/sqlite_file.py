@@ -11,12 +11,13 @@ from pathlib import Path
 from urllib.parse import quote
 
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.migration import migrate
+from app.storage.database.migration import check_revisions, migrate
 from hexapods.domain.errors import DamagedFile
 from hexapods.files import sync_folder
 
 _TABLES = frozenset({"alembic_version", "about", "runs", "evaluations", "artifacts"})
-"""Tables of the first released schema, which all later schemas contain."""
+"""Tables that every schema has."""
+_REVISIONS = "SELECT version_num FROM alembic_version"
 SUFFIXES = ("", "-wal", "-shm")
 _ADVICE = (
     "put a backup of it back, with its artifacts; or, if nothing is missed, move it away, and the "
@@ -52,14 +53,16 @@ def create_file(path: Path, on_disk_full: Callable[[], bool]) -> None:
 def file_identity(path: Path) -> tuple[int, int] | None:
     """Return device and inode of a file; None if there is none."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def check_file(path: Path, artifacts: Path) -> None:
-    """Check that an existing database file has its tables; a missing file is accepted.
+    """Check that an existing database file has its tables, and is of a version that is read.
+
+    A missing file is accepted. Nothing is written.
 
     Args:
         path: of the file.
@@ -68,6 +71,7 @@ def check_file(path: Path, artifacts: Path) -> None:
 
     Raises:
         DamagedFile: if the file is empty or lacks tables.
+        InvalidInput: if a newer version made it, or one before 1.0.
     """
     if not path.exists():
         return
@@ -80,6 +84,8 @@ def check_file(path: Path, artifacts: Path) -> None:
         with closing(sqlite3.connect(f"file:{quote(str(path))}?mode=ro", uri=True)) as connection:
             rows = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
             missing = _TABLES - {name for (name,) in rows}
+            if not missing:
+                check_revisions(row for (row,) in connection.execute(_REVISIONS))
     except sqlite3.Error:
         # Opening the database afterwards reports the error.
         return

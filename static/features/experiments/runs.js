@@ -59,25 +59,10 @@ export const summaryOf = (id) => summaries.value[id] ?? null;
 export const summary = computed(() => summaries.value[chosenRun.value?.id ?? ""] ?? null);
 export const summaryError = computed(() => errors.value[chosenRun.value?.id ?? ""] ?? null);
 
-/** Lists of a config that are no parameters of a setting. */
-const PLACES = ["agents", "gaits", "observations", "robots", "worlds"];
-
-/**
- * A summary with the names of its parameters, which earlier versions left out.
- * @param {Summary} stored
- * @returns {Summary}
- */
-function withParameters(stored) {
-  const { settings, ...fields } = stored.config;
-  const lists = Object.entries({ ...fields, ...settings }).filter(([, value]) => Array.isArray(value));
-  const names = lists.map(([name]) => name).filter((name) => !PLACES.includes(name));
-  return { ...stored, parameters: stored.parameters ?? names };
-}
-
 /** @param {string} id */
 async function loadSummary(id) {
   try {
-    setEntry(summaries, id, withParameters(await getSummary(id)));
+    setEntry(summaries, id, await getSummary(id));
     setEntry(errors, id, null);
   } catch (error) {
     setEntry(errors, id, /** @type {RequestError} */ (error));

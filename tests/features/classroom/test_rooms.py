@@ -2,19 +2,15 @@
 
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 from sqlalchemy import Connection, TextClause, text
-from starlette.datastructures import Headers
 
-from app.features.classroom.access import RoomAccess, room_cookie
 from app.features.classroom.lesson import read_lesson
 from app.features.classroom.room_rows import RoomRows, RoomRun, Seat
 from app.features.classroom.rooms import IDLE, MAX_OPEN, Rooms
-from app.settings import Settings
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
 from tests.postgresql import PostgresServer
@@ -215,33 +211,6 @@ def test_answers_and_cards_keep_a_room_from_being_idle(store: RunStore) -> None:
 
 def _execute(change: TextClause, values: dict[str, str], connection: Connection) -> object:
     return connection.execute(change, values)
-
-
-def test_an_open_room_of_an_earlier_version_goes_on_until_it_ends(store: RunStore) -> None:
-    """Its code is shorter; the cookies of its participants hold, too."""
-    rooms = Rooms(store)
-    code = rooms.create(LESSON).code
-    old = "KM4T7Q"
-    for table in ("rooms", "participants"):
-        column = "code" if table == "rooms" else "room"
-        change = text(f"UPDATE {table} SET {column} = :old WHERE {column} = :code")
-        store.database.write(partial(_execute, change, {"old": old, "code": code}))
-    rooms = Rooms(store)
-    joined = rooms.join("km4-t7q")
-    rooms.predict(old, 0, 0, 0.5)
-    again = Rooms(store)
-    assert again.seat(old, joined.key) is not None
-    assert again.get("KM4 T7Q").predictions == {(0, 0): 0.5}
-    headers = Headers({"host": "127.0.0.1:8000"}).raw
-    name = room_cookie({"headers": headers, "state": {"cookies": {}}}, old, is_secure=False).name
-    scope = {"scheme": "http", "headers": headers, "state": {"cookies": {name: joined.key}}}
-    access = RoomAccess(again, Settings(data=Path("unused")))
-    identity = access.identify(scope)
-    assert identity is not None
-    assert identity.seats == ((old, 0),)
-    again.end(old)
-    with pytest.raises(Conflict, match="has ended"):
-        again.join(old)
 
 
 def test_nothing_is_left_of_a_removed_participant_but_hidden_runs(store: RunStore) -> None:

@@ -17,13 +17,14 @@ from hexapods.domain.errors import InvalidInput
 from tests.api.conftest import running
 from tests.features.experiments.ended_experiments import ended_experiment
 from tests.features.needing import needs
+from tests.storage.stores import opened
 
 RUN_ID = "00000000000e1"
 WITHOUT = ("experiments",)
 
 
 def test_its_runs_stay_and_are_listed(tmp_path: Path) -> None:
-    with open_store(Settings(data=tmp_path)) as store:
+    with opened(tmp_path, None) as store:
         ended_experiment(store, RUN_ID)
     with running(Settings(data=tmp_path, without=WITHOUT)) as api:
         (listed,) = api.get("/runs")["items"]
@@ -48,7 +49,7 @@ def test_its_runs_stay_and_are_listed(tmp_path: Path) -> None:
 def test_they_count_as_no_damage_and_cannot_be_imported(tmp_path: Path) -> None:
     from app.features.archives.transfer import export_chunks, import_runs
 
-    with open_store(Settings(data=tmp_path / "with")) as store:
+    with opened(tmp_path / "with", None) as store:
         ended_experiment(store, RUN_ID)
         data = b"".join(export_chunks(store, RUN_ID))
     with open_store(Settings(data=tmp_path / "with", without=WITHOUT)) as store:

@@ -46,24 +46,6 @@ def test_finished_experiment_has_summary_and_report(swept: dict[str, Any], api: 
     assert swept["id"] not in {run["id"] for run in api.get("/trainings")["items"]}
 
 
-@needs("archives")
-def test_summary_of_an_earlier_version_has_its_settings_as_a_member(
-    swept: dict[str, Any], api: Api
-) -> None:
-    from tests.features.archives.test_transfer import repacked
-
-    summary = api.get(f"/experiments/{swept['id']}/summary")
-    config = summary["config"]
-    del config["reward"], config["settings"]["objective"], config["settings"]["average_rate"]
-    fields = {name: value for name, value in config.items() if name != "settings"}
-    earlier = {**summary, "format": 1, "config": {**fields, **config["settings"]}}
-    exported = api.call("GET", f"/experiments/{swept['id']}/export").content
-    archived = repacked(exported, summary_json=json.dumps(earlier).encode())
-    copy = api.call("POST", "/import", content=archived).json()
-    assert api.get(f"/experiments/{copy['id']}/summary") == summary
-    api.call("DELETE", f"/experiments/{copy['id']}")
-
-
 def test_report_has_a_policy_that_forbids_scripts(swept: dict[str, Any], api: Api) -> None:
     for path in ("report", *(f"files/{name}" for name in swept["result"]["files"])):
         answer = api.call("GET", f"/experiments/{swept['id']}/{path}")

@@ -136,22 +136,6 @@ def test_resumed_with_other_options_it_names_those_that_differ(
     assert sentence.endswith(f"which differs in {option}; choose another folder")
 
 
-def test_folder_of_an_earlier_version_is_read(tmp_path: Path) -> None:
-    begun = config(steps=(50,), candidates=12, search_seeds=3, objective="area")
-    with open_results(tmp_path, begun):
-        pass
-    head = json.loads((tmp_path / TRIALS).read_text("utf-8"))
-    assert head["kind"] == "tuning"
-    head["config"]["trials"] = head["config"].pop("candidates")
-    (tmp_path / TRIALS).write_text(json.dumps(head | {"kind": "TuningConfig"}) + "\n", "utf-8")
-
-    with open_results(tmp_path, begun) as folder:
-        assert folder.done == 0
-    league = ("experiment", "league", *PLACE, "--out", str(tmp_path))
-    sentence = refusal(*league, folder=tmp_path, run=in_process)
-    assert sentence.endswith("has results of another experiment; choose another folder")
-
-
 def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:
     folder = ("--out", "mine", "--workers", "1", "--seeds", "1")
     league = ("experiment", "league", *PLACE, "--agent", "r-max", *folder)

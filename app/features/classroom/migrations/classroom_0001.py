@@ -8,7 +8,7 @@ down_revision = None
 
 
 def upgrade() -> None:
-    """Create the tables, unless the schema of the core had them before."""
+    """Create the tables."""
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     time = sa.DateTime(timezone=True)
@@ -18,7 +18,6 @@ def upgrade() -> None:
         sa.Column("title", text, nullable=False),
         sa.Column("document", sa.JSON(), nullable=False),
         sa.Column("created_at", time, nullable=False),
-        if_not_exists=True,
     )
     op.create_table(
         "rooms",
@@ -32,7 +31,6 @@ def upgrade() -> None:
         sa.Column("spotlight", text),
         sa.Column("created_at", time, nullable=False),
         sa.Column("ended_at", time),
-        if_not_exists=True,
     )
 
     def room() -> sa.ForeignKey:
@@ -51,7 +49,6 @@ def upgrade() -> None:
         sa.Column("is_approved", sa.Boolean(), nullable=False),
         sa.Column("joined_at", time, nullable=False),
         sa.Column("left_at", time),
-        if_not_exists=True,
     )
     op.create_table(
         "predictions",
@@ -60,7 +57,6 @@ def upgrade() -> None:
         number("card"),
         sa.Column("value", sa.JSON(), nullable=False),
         sa.Column("made_at", time, nullable=False),
-        if_not_exists=True,
     )
     op.create_table(
         "room_runs",
@@ -73,8 +69,5 @@ def upgrade() -> None:
         sa.Column("is_shown", sa.Boolean(), nullable=False),
         sa.Column("answer", sa.JSON(none_as_null=True)),
         sa.Column("created_at", time, nullable=False),
-        if_not_exists=True,
     )
-    op.create_index(
-        "ix_room_runs_room_card_seed", "room_runs", ["room", "card", "seed"], if_not_exists=True
-    )
+    op.create_index("ix_room_runs_room_card_seed", "room_runs", ["room", "card", "seed"])

@@ -8,7 +8,7 @@ down_revision = None
 
 
 def upgrade() -> None:
-    """Create the tables, unless the schema of the core had them before."""
+    """Create the table."""
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     op.create_table(
@@ -18,5 +18,4 @@ def upgrade() -> None:
         sa.Column("steps", sa.BigInteger(), nullable=False),
         sa.Column("is_main", sa.Boolean(), nullable=False),
         sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
-        if_not_exists=True,
     )

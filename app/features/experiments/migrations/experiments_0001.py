@@ -8,7 +8,7 @@ down_revision = None
 
 
 def upgrade() -> None:
-    """Create the table, unless the schema of the core had it before."""
+    """Create the table."""
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     run = sa.ForeignKey("runs.id", ondelete="CASCADE")
@@ -19,5 +19,4 @@ def upgrade() -> None:
         sa.Column("result", sa.JSON()),
         sa.Column("set_aside", text),
         sa.Column("compute_s", sa.Double(), nullable=False),
-        if_not_exists=True,
     )

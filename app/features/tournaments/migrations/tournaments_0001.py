@@ -8,7 +8,7 @@ down_revision = None
 
 
 def upgrade() -> None:
-    """Create the tables, unless the schema of the core had them before."""
+    """Create the tables."""
     is_postgresql = op.get_bind().dialect.name == "postgresql"
     text = sa.String(collation="C" if is_postgresql else None)
     time = sa.DateTime(timezone=True)
@@ -24,7 +24,6 @@ def upgrade() -> None:
         sa.Column("outcome", sa.JSON()),
         sa.Column("created_at", time, nullable=False),
         sa.Column("ended_at", time),
-        if_not_exists=True,
     )
 
     def tournament() -> sa.Column[str]:
@@ -45,7 +44,6 @@ def upgrade() -> None:
         sa.Column("training_id", text),
         sa.Column("is_withdrawn", sa.Boolean(), nullable=False),
         sa.Column("entered_at", time, nullable=False),
-        if_not_exists=True,
     )
     op.create_table(
         "tournament_judgements",
@@ -54,12 +52,10 @@ def upgrade() -> None:
         number("draw"),
         sa.Column("distance_m", sa.Double(), nullable=False),
         sa.Column("failure", text),
-        if_not_exists=True,
     )
     op.create_table(
         "tournament_tables",
         tournament(),
         sa.Column("sha256", text, primary_key=True),
         sa.Column("data", text, nullable=False),
-        if_not_exists=True,
     )

@@ -1,6 +1,6 @@
-"""Alembic migrations from each released schema to the next. A released file is never changed.
+"""Alembic revisions of the core's tables. The file of a released revision is never changed.
 
 Alembic discovers the files in `versions` by `env`; `docs/operations.md` describes an upgrade. To
-add a migration, add a file to `versions` with the previous one as its `down_revision`, and a dump
-of its schema to `tests/promises/released`.
+change the tables, add a file to `versions` with the previous one as its `down_revision`. Features
+have branches of their own, `app/features/NAME/migrations`.
 """

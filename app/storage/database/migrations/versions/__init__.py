@@ -1,1 +1,1 @@
-"""Migrations, one file per released schema."""
+"""Revisions of the core's tables, one file each."""

@@ -1,4 +1,4 @@
-"""The runs in the dumps. New dumps have the same runs, as far as their schema supports them."""
+"""Runs of all kinds and states with every field, for tests of storage."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -9,13 +9,11 @@ from app.storage.database.store import RunStore
 from app.storage.run import TABLE, Run
 from hexapods.domain.settings import SettingValues
 from hexapods.runs.results import RaceResult, TrainingResult
-from tests.storage.stores import ODD, PLAIN, SWEEP, TRIALS, experiment, race, training
+from tests.storage.stores import ODD, SWEEP, TRIALS, experiment, race, training
 
-# Schemas up to 0003 were released when every agent had Q-learning's settings.
 _RATES = {"alpha": 0.3, "gamma": 0.9, "epsilon_start": 1.0, "epsilon_end": 0.0}
 _GRID = {name: (value,) for name, value in _RATES.items()} | {"alpha": (0.1, 0.3)}
 _T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
-# Up to 0004 the distance of the first is NaN, which is read as one that was not measured.
 RUNS: list[Run] = [
     training(
         "0pmz0000a0001",
@@ -33,7 +31,6 @@ RUNS: list[Run] = [
     training(
         "0pmz0000a0002",
         state="failed",
-        config=replace(PLAIN, settings=SettingValues(_RATES)),
         continued_from="0pmz0000a0001",
         error="The physics diverged.",
         created_at=_T,
@@ -49,9 +46,9 @@ EXPERIMENT = experiment(
     created_at=_T,
     ended_at=_T,
 )
-"""Since 0002, with `TRIALS`."""
+"""It has `TRIALS`."""
 ANNOTATIONS: dict[str, Any] = {"tags": ("Übung 1", "kept"), "notes": "Slips.\n\tNext: µ = 0.4"}
-"""Of the first run, since 0004."""
+"""Tags and notes of the first run."""
 CURVE: list[dict[str, Any]] = [
     {"step": 50, "distance_m": 0.125, "epsilon": 1.0},
     {"step": 100, "distance_m": -0.25, "epsilon": 0.9},

@@ -1,1 +1,0 @@
-"""Database dumps of every released schema, and the runs that they contain."""
