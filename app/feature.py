@@ -29,7 +29,6 @@ from starlette.routing import BaseRoute
 from app.jobs.queue import Owner
 from app.jobs.submissions import Start
 from app.setting_fields import PREFIX
-from app.settings import Settings
 from app.storage.database.schema import RUNS
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import HexapodError, InvalidInput
@@ -136,11 +135,6 @@ class Feature:
     @classmethod
     def read_rows(cls, store: RunStore) -> None:
         """Read all its rows, so that those that are damaged are known."""
-
-    @classmethod
-    def checks(cls) -> Mapping[str, Callable[[Settings], str]]:
-        """Return its checks of `hexapods doctor`, by their titles."""
-        return {}
 
     def open(self) -> AbstractAsyncContextManager[None]:
         """Return what runs with the app: entered after the core's parts, before the first job."""

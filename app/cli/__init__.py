@@ -1,6 +1,6 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
-Commands: `serve`, `train`, `race`, `benchmark`, `best_known`, `runs` (list, show, delete), `verify`
+Commands: `serve`, `train`, `race`, `benchmark`, `runs` (list, show, delete), `verify`
 (by a `verifier` of each kind of file; score files in `verify_benchmark`), `doctor` (with checks in
 `machine_checks` and `data_checks`), `bench` (with the measurements in `benchmarks`).
 Most descriptions in `--help` are module docstrings.

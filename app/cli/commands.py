@@ -19,9 +19,7 @@ from hexapods.domain.errors import InvalidInput
 
 CORE_COMMANDS: Mapping[str, str] = {
     name: f"app.cli.{name.replace('-', '_')}"
-    for name in (
-        *("serve", "train", "race", "benchmark", "best-known", "runs", "verify", "doctor", "bench"),
-    )
+    for name in (*("serve", "train", "race", "benchmark", "runs", "verify", "doctor", "bench"),)
 }
 GROUP = "hexapods.commands"
 """Entry-point group of commands of features of other packages."""

@@ -3,12 +3,13 @@
 import argparse
 import json
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import NamedTuple
 
 from app.cli import machine_checks
 from app.cli.options import CommandParser
 from app.cli.stored_runs import add_data
-from app.settings import Settings, read_settings
+from app.settings import read_settings
 from hexapods.domain.errors import HexapodError
 
 
@@ -22,14 +23,14 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run all checks; return 0 if all pass, else 1."""
-    findings = []
-    for finding in examine(options.data):
-        findings.append(finding)
+    results = []
+    for result in examine(options.data):
+        results.append(result)
         if not options.json:
-            print(f"{'✓' if finding.ok else '✗'} {finding.name}: {finding.said}", flush=True)
-    ok = all(finding.ok for finding in findings)
+            print(f"{'✓' if result.ok else '✗'} {result.name}: {result.said}", flush=True)
+    ok = all(result.ok for result in results)
     if options.json:
-        print(json.dumps({"ok": ok, "checks": [finding._asdict() for finding in findings]}))
+        print(json.dumps({"ok": ok, "checks": [result._asdict() for result in results]}))
     return 0 if ok else 1
 
 
@@ -44,23 +45,23 @@ class CheckResult(NamedTuple):
 def examine(data: str | None) -> Iterator[CheckResult]:
     """Run the checks one after the other, and yield each result.
 
+    With settings that are not valid those that need them are left out.
+
     Args:
         data: data folder, if other than that of the environment.
     """
     for name, check in machine_checks.CHECKS.items():
         yield _run_check(name, check)
-    settings: list[Settings] = []
-
-    def read() -> str:
-        settings.append(read_settings(data=data))
-        return machine_checks.check_settings(settings[0])
-
-    yield _run_check("settings", read)
+    try:
+        settings = read_settings(data=data)
+    except HexapodError as error:
+        yield CheckResult("settings", False, str(error))
+        return
     # Imported here, as the database modules would slow the start of other commands.
-    from app.cli.data_checks import data_checks  # noqa: PLC0415
+    from app.cli.data_checks import CHECKS  # noqa: PLC0415
 
-    for name, check_data in data_checks(settings[0]).items() if settings else ():
-        yield _run_check(name, lambda check_data=check_data: check_data(settings[0]))  # type: ignore[misc]
+    for name, check_of in CHECKS.items():
+        yield _run_check(name, partial(check_of, settings))
 
 
 def _run_check(name: str, check: Callable[[], str]) -> CheckResult:

@@ -1,7 +1,7 @@
 """Best known distances: the farthest walks of several searches and learners, which are kept.
 
 `best_known.json` holds the distances of the preset robots in the named worlds, one for each search
-or learner that has walked there; `hexapods best-known` computes them again.
+or learner that has walked there; `benchmarks/best_known.py` computes them again.
 """
 
 import json
@@ -44,10 +44,10 @@ def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float
     """
     if walk.simulator != "mujoco" or walk.grid != FootGrid():
         return None
-    robot = next((name for name, one in PRESETS.items() if one == walk.robot), None)
+    robot = next((name for name, preset in PRESETS.items() if preset == walk.robot), None)
     holds = walk.world.as_of(0) if conditions is None else conditions
     physical = _physical(holds, walk.robot)
-    world = next((name for name, one in WORLDS.items() if one.world.as_of(0) == physical), None)
+    world = next((name for name, named in WORLDS.items() if named.world.as_of(0) == physical), None)
     if robot is None or world is None:
         return None
     return kept().get((robot, world, walk.resolved_gait.name))

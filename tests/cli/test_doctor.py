@@ -1,6 +1,7 @@
 """`hexapods doctor`, as a user runs it: passed checks, and failed checks with their remedy."""
 
 import socket
+import sys
 from importlib.metadata import Distribution
 from pathlib import Path
 
@@ -25,11 +26,7 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     lines = done.stdout.splitlines()
     assert all(line.startswith("✓ ") for line in lines)
     names = [line[2:].partition(":")[0] for line in lines]
-    assert names[:5] == ["python", "packages", "engine", "physics", "browser"]
-    assert names[5:7] == ["cores", "settings"]
-    checked = ["features", "data folder", "room", "lock", "database", "rows", "robots", "address"]
-    # Then come those of features.
-    assert names[7:15] == checked
+    assert names == ["packages", "physics", "machine", "data", "address"]
     assert list(tmp_path.iterdir()) == []
 
 
@@ -38,9 +35,10 @@ def test_an_engine_that_another_package_has_written_over_is_told(tmp_path: Path)
     (tmp_path / "sitecustomize.py").write_text("import mujoco\nmujoco.__version__ = '3.17.0'\n")
     done = hexapods("doctor", folder=tmp_path, PYTHONPATH=str(tmp_path), **ANY_PORT)
     assert done.returncode == 1
-    [told] = [line for line in done.stdout.splitlines() if line.startswith("✗ ")]
-    assert told.startswith("✗ engine: the MuJoCo that is loaded is 4.0.0 with the bindings of 3.17")
-    assert "install the right one alone: pip uninstall mujoco mujoco-core && " in told
+    [failure] = [line for line in done.stdout.splitlines() if line.startswith("✗ ")]
+    assert failure.startswith("✗ physics: ")
+    assert "the MuJoCo that is loaded is 4.0.0 with the bindings of 3.17" in failure
+    assert "install the right one alone: pip uninstall mujoco mujoco-core && " in failure
 
 
 def test_a_changed_file_of_a_package_is_named(tmp_path: Path) -> None:
@@ -59,44 +57,51 @@ def test_a_changed_file_of_a_package_is_named(tmp_path: Path) -> None:
     assert machine_checks.changed_file(package) == "engine/__init__.py"
 
 
+def test_optional_packages_that_are_missing_are_named_with_what_installs_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "pip install" not in examined(tmp_path)["packages"][1]
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    passes, said = examined(tmp_path)["packages"]
+    assert passes, "all of them are optional"
+    assert "Joints and feet (Parquet): `pip install 'racing-hexapods[parquet]'`" in said
+
+
 def test_quota_and_database_are_checked(tmp_path: Path) -> None:
     with opened(tmp_path / "data", None):
-        found = examined(tmp_path)
-    assert failures(found) == {}
-    assert "a server has the data folder" in found["lock"][1]
+        assert failures(examined(tmp_path)) == {}
     (tmp_path / "data" / "big").write_bytes(bytes(9_500_000))
-    assert "raise HEXAPODS_QUOTA_MB" in failures(examined(tmp_path, HEXAPODS_QUOTA_MB="10"))["room"]
+    checks = examined(tmp_path, HEXAPODS_QUOTA_MB="10")
+    assert "raise HEXAPODS_QUOTA_MB" in failures(checks)["machine"]
     (tmp_path / "data" / DATABASE_FILE).write_text("milk" * 1000)
-    assert "damaged" in failures(examined(tmp_path))["database"]
+    assert "damaged" in failures(examined(tmp_path))["data"]
 
 
 @needs("robots")
 def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
-    assert examined(tmp_path)["robots"] == (True, "none is stored")
     (tmp_path / "rex.json").write_bytes(document_of(robot({"preset": "dog", "femur_m": 0.096})))
     where = ("--name", "Rex", "--data", str(tmp_path / "data"))
     made = output("robots", "import", "rex.json", *where, folder=tmp_path, run=in_process)
-    assert examined(tmp_path)["robots"] == (True, "1 stored, which can all be read")
+    assert failures(examined(tmp_path)) == {}
     (document,) = (tmp_path / "data" / "robots").rglob(f"{made['id']}*")
     document.write_bytes(document.read_bytes()[:-9])
-    found = examined(tmp_path)
-    assert f"Rex ({made['id']})" in failures(found)["robots"]
-    assert "put a backup" in failures(found)["robots"]
-    assert found["database"][0]
+    said = failures(examined(tmp_path))["data"]
+    assert f"Rex ({made['id']})" in said
+    assert "put a backup" in said
 
 
 def test_unusable_data_folder_is_named(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("a file")
-    assert f"{tmp_path / 'data'} cannot be written" in failures(examined(tmp_path))["data folder"]
+    assert f"{tmp_path / 'data'} cannot be written" in failures(examined(tmp_path))["data"]
 
 
 def test_what_other_users_can_open_is_named(tmp_path: Path) -> None:
     with opened(tmp_path / "data", None):
         pass
     (tmp_path / "data").chmod(0o755)
-    assert "server.lock" not in failures(examined(tmp_path))["data folder"]
+    assert "server.lock" not in failures(examined(tmp_path))["data"]
     (tmp_path / "data" / "server.lock").chmod(0o644)
-    named = failures(examined(tmp_path))["data folder"]
+    named = failures(examined(tmp_path))["data"]
     assert f"{tmp_path / 'data'}, {tmp_path / 'data' / 'server.lock'}, and stop" in named
     assert "chmod go-rwx" in named
 
@@ -106,27 +111,26 @@ def test_port_of_another_process_fails_and_that_of_the_own_server_passes(tmp_pat
     folder.mkdir(mode=0o700)
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        found = failures(examined(tmp_path, HEXAPODS_PORT=str(port)))
-        assert "something else listens" in found["address"]
+        failed = failures(examined(tmp_path, HEXAPODS_PORT=str(port)))
+        assert "something else listens" in failed["address"]
         write_address_file(folder, f"http://127.0.0.1:{port}/")
         assert "address" in failures(examined(tmp_path, HEXAPODS_PORT=str(port)))
         with lock_folder(folder):
-            found = examined(tmp_path, HEXAPODS_PORT=str(port))
-    assert failures(found) == {}
-    assert found["lock"][1].endswith(f"at http://127.0.0.1:{port}/")
+            assert failures(examined(tmp_path, HEXAPODS_PORT=str(port))) == {}
 
 
 @pytest.mark.parametrize(
-    ("variables", "names"),
+    ("variables", "check", "names"),
     [
-        ({"HEXAPODS_HOST": "0.0.0.0"}, "set HEXAPODS_TOKEN"),
-        ({"HEXAPODS_PORT": "many"}, "from 0 to 65535"),
-        ({"HEXAPODS_PUBLIC_URL": "https://hexapods.example"}, "set HEXAPODS_TOKEN"),
+        ({"HEXAPODS_HOST": "0.0.0.0"}, "settings", "set HEXAPODS_TOKEN"),
+        ({"HEXAPODS_PORT": "many"}, "settings", "from 0 to 65535"),
+        ({"HEXAPODS_PUBLIC_URL": "https://hexapods.example"}, "address", "set HEXAPODS_TOKEN"),
     ],
 )
-def test_invalid_settings_are_named(variables: dict[str, str], names: str, tmp_path: Path) -> None:
-    found = failures(examined(tmp_path, **variables))
-    assert names in found["settings"]
+def test_invalid_settings_are_named(
+    variables: dict[str, str], check: str, names: str, tmp_path: Path
+) -> None:
+    assert names in failures(examined(tmp_path, **variables))[check]
 
 
 def test_postgresql_is_checked_without_showing_its_password(
@@ -134,13 +138,13 @@ def test_postgresql_is_checked_without_showing_its_password(
 ) -> None:
     with database_url("postgresql", postgresql) as url:
         assert url is not None
-        assert "to be made" in examined(tmp_path, HEXAPODS_DATABASE_URL=url)["database"][1]
+        assert "PostgreSQL, made when" in examined(tmp_path, HEXAPODS_DATABASE_URL=url)["data"][1]
         with opened(tmp_path / "data", url):
-            found = examined(tmp_path, HEXAPODS_DATABASE_URL=url)
-        assert failures(found) == {}
-        assert "PostgreSQL can be read" in found["database"][1]
+            checks = examined(tmp_path, HEXAPODS_DATABASE_URL=url)
+        assert failures(checks) == {}
+        assert "PostgreSQL, all rows" in checks["data"][1]
     away = "postgresql://me:hunter2secret@127.0.0.1:1/hexapods"
     done = hexapods("doctor", folder=tmp_path, **ANY_PORT, HEXAPODS_DATABASE_URL=away)
     assert done.returncode == 1
-    assert "✗ database: the PostgreSQL server does not answer" in done.stdout
+    assert "✗ data: the PostgreSQL server does not answer" in done.stdout
     assert "hunter2" not in done.stdout + done.stderr

@@ -351,8 +351,8 @@ def test_damaged_runs_are_named_everywhere_and_can_be_deleted(
         assert f"hexapods_runs_damaged {len(damage)}.0" in server.client.get("/metrics").text
         rows = {run["id"]: run.get("damaged") for run in command("runs", "list")["items"]}
         assert rows == {**dict.fromkeys((SOUND, RACE, EXPERIMENT)), **damaged}
-        found = {check["name"]: check for check in command("doctor", code=1)["checks"]}
-        assert not found["database"]["ok"]
+        checks = {check["name"]: check for check in command("doctor", code=1)["checks"]}
+        assert not checks["data"]["ok"]
         for run_id, message in damaged.items():
             assert len(message) > 10
             look = server.client.get(f"/api/v1/trainings/{run_id}").json()
@@ -361,7 +361,7 @@ def test_damaged_runs_are_named_everywhere_and_can_be_deleted(
             snapshot = first_event(server, f"?run_id={run_id}")
             assert [run["damaged"] for run in snapshot["runs"]] == [message]
             assert command("runs", "show", run_id)["damaged"] == message
-            assert run_id in found["database"]["said"]
+            assert run_id in checks["data"]["said"]
             resumed = server.client.post(f"/api/v1/trainings/{run_id}/resume")
             assert resumed.status_code in (404, 409)
         for run_id in damaged:

@@ -126,11 +126,11 @@ def fresh(text: str, number: int) -> str:
 
 
 def doctor(folder: Path) -> str:
-    """Return what `hexapods doctor` says of the rows of the database."""
+    """Return what `hexapods doctor` says of the stored data."""
     done = in_process("doctor", "--data", str(folder), "--json", folder=folder, HEXAPODS_PORT="0")
     assert done.stderr == ""
-    found = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
-    said: str = found["rows"]["said"]
+    checks = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
+    said: str = checks["data"]["said"]
     assert "install" not in said
     return said
 

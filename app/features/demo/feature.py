@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
+from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
@@ -29,11 +29,8 @@ from app.features.demo.visitors import Visitors
 from app.jobs.queue import Owner
 from app.jobs.submissions import Start
 from app.limits.addresses import client_of
-from app.settings import Settings
-from app.storage.database.read_only import open_read_only
 from app.storage.database.store import RunStore
 from app.storage.run import IdempotencyKey, Run
-from hexapods.domain.text import counted
 
 _logger = logging.getLogger(__name__)
 
@@ -73,10 +70,6 @@ class Demo(Feature):
     @classmethod
     def read_rows(cls, store: RunStore) -> None:
         VisitorRows(store.database).all()
-
-    @classmethod
-    def checks(cls) -> Mapping[str, Callable[[Settings], str]]:
-        return {"visitors": _visitors}
 
     @asynccontextmanager
     async def open(self) -> AsyncIterator[None]:
@@ -155,14 +148,6 @@ class Demo(Feature):
                 await feature.forget(names)
         except Exception:  # such as a damaged file: the next clean-up is not to be left out
             _logger.exception("the clean-up has failed")
-
-
-def _visitors(settings: Settings) -> str:
-    with open_read_only(settings, METADATA) as store:
-        count = len(VisitorRows(store.database).all())
-    return (
-        f"{counted(count, 'run')} of a demo's visitors" if count else "no run of a demo's visitor"
-    )
 
 
 FEATURE = Demo

@@ -1,6 +1,6 @@
 """Exports as a feature: routes, what the options say of them, and a process that renders."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from fastapi import APIRouter
@@ -10,8 +10,6 @@ from app.feature import Feature
 from app.features.exports import routes
 from app.features.exports.file_renderer import FileRenderer
 from app.features.exports.options import ExportOption, export_options
-from app.settings import Settings
-from hexapods.exports.registry import missing_extras
 
 
 class Exports(Feature):
@@ -38,25 +36,8 @@ class Exports(Feature):
         del agents
         return {"exports": export_options()}
 
-    @classmethod
-    def checks(cls) -> Mapping[str, Callable[[Settings], str]]:
-        return {"exports": _installed}
-
     def close(self) -> None:
         self.renderer.close()
-
-
-def _installed(settings: Settings) -> str:
-    """Say which files of a walk need a package that is missing; all of them are optional."""
-    del settings
-    missing = missing_extras()
-    needs = [
-        f"{', '.join(title for title in missing if missing[title] == install)}: `{install}`"
-        for install in dict.fromkeys(missing.values())
-    ]
-    if not needs:
-        return "the packages for all files of a walk are installed"
-    return f"packages for some files of a walk are not installed: {'; '.join(needs)}"
 
 
 FEATURE = Exports

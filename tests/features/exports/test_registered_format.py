@@ -1,4 +1,4 @@
-"""From an entry of the registry of exports follow its route, command, menu row and check."""
+"""From an entry of the registry of exports follow its route, command and menu row."""
 
 import json
 import subprocess
@@ -8,8 +8,6 @@ from typing import Any
 
 import pytest
 
-from app.cli import machine_checks
-from tests.cli.running import in_process
 from tests.timeouts import LONG_S
 
 ROOT = Path(__file__).parents[3]
@@ -98,20 +96,3 @@ def test_a_format_that_is_registered_has_its_route_command_and_menu(tmp_path: Pa
     menu = {one["title"]: (one["address"], one["method"]) for one in found["menu"]}
     assert menu["Dummy"] == ("dummy?format=dum", "GET")
     assert (found["code"], found["file"].partition(": ")[2]) == (0, "2 lanes, 3 loops")
-
-
-def test_doctor_says_which_files_need_a_package_and_how_to_install_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name in ("physics", "browser"):  # each takes a second
-        monkeypatch.delitem(machine_checks.CHECKS, name)
-
-    def said() -> str:
-        done = in_process("doctor", "--data", str(tmp_path), "--json", folder=tmp_path)
-        checks = {one["name"]: one for one in json.loads(done.stdout)["checks"]}
-        assert checks["exports"]["ok"], "all of them are optional"
-        return str(checks["exports"]["said"])
-
-    assert said() == "the packages for all files of a walk are installed"
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert "Joints and feet (Parquet): `pip install 'racing-hexapods[parquet]'`" in said()

@@ -1,26 +1,25 @@
-"""`hexapods best-known`: find the farthest walks, per world and gait.
+"""Computes best known distances: `python benchmarks/best_known.py --world ice --out FILE`.
 
 Beam searches over the whole walk, searchers and learners walk 50 steps from rest on the robot as
-designed, in MuJoCo; the farthest of these walks is the best known.
+designed, in MuJoCo; the farthest of these walks is the best known. `--out
+hexapods/runs/best_known.json` renews the distances that the product has.
 """
 
 import argparse
 import json
-from collections.abc import Iterable, Iterator, Mapping
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from app.cli.files import check_writable, write_whole
-from app.cli.options import CommandParser, integer, split
-from app.cli.terminal import progress
 from hexapods import __version__
 from hexapods.agents import registry
 from hexapods.assembly import build_simulator
 from hexapods.domain.checks import check_whole
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbances import SensorNoise
-from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS
 from hexapods.domain.robot import robot
 from hexapods.domain.world import WORLDS, named_world
@@ -39,15 +38,22 @@ DEFAULT_WIDTHS = (16, 48)
 INFORMED_BUDGETS = (3, 40)
 PRACTICE_STEPS, EVALUATE_EVERY = 250, 50
 """Practice of a learner; the farthest walk of all its evaluations counts."""
-_PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]
-_COMPUTED_BY = "hexapods best-known, in MuJoCo"
+_PHYSICAL = [name for name, named in WORLDS.items() if named.world.one_of(SensorNoise) is None]
+_COMPUTED_BY = "benchmarks/best_known.py, in MuJoCo"
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser(
-        "best-known", help="search for the farthest walks", description=__doc__
-    )
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Search as the arguments say; return 2 if they are not valid."""
+    try:
+        _run(_parser().parse_args(arguments))
+    except HexapodError as error:
+        print(f"best_known: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robot", default="stiff", help="presets, by commas (default stiff)")
     parser.add_argument(
         "--world",
@@ -70,17 +76,14 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     )
     parser.add_argument(
         "--width",
-        type=lambda text: tuple(integer(part) for part in split(text)),
+        type=lambda text: tuple(map(int, _split(text))),
         default=DEFAULT_WIDTHS,
         metavar="LIST",
         help="walks that beams keep after each step "
         f"(default {','.join(map(str, DEFAULT_WIDTHS))})",
     )
     parser.add_argument(
-        "--threads",
-        type=integer,
-        default=0,
-        help="threads of the simulator (default: one per core)",
+        "--threads", type=int, default=0, help="threads of the simulator (default: one per core)"
     )
     parser.add_argument(
         "--out",
@@ -95,37 +98,36 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         help="instead of searching, add the farthest walk of each agent in these reports of "
         "experiments, by commas; robots with a build tolerance do not count",
     )
-    parser.set_defaults(run=run)
+    return parser
 
 
-def run(options: argparse.Namespace) -> int:
-    """Search walk by walk, print each distance, and keep it at once.
+def _run(options: argparse.Namespace) -> None:
+    """Search walk by walk, print each distance, and write it to the table at once.
 
     Raises:
-        HexapodError: if the options are not valid, or the table cannot be written.
+        HexapodError: if the options are not valid.
+        OSError: if the table cannot be read or written.
     """
     if options.reports:
-        return _add_reports(options)
+        _add_reports(options)
+        return
     finders = list(_finders(options))
     tasks = [(names, walk, finder) for names, walk in _problems(options) for finder in finders]
     rows = _read(options.out) if options.out else []
     done = {(*_key(row), row["version"]) for row in rows}
-    with progress() as bar:
-        task = bar.add_task("searching", total=len(tasks))
-        for names, walk, finder in tasks:
-            row = {**names, **finder, "version": __version__}
-            if (*_key(row), row["version"]) not in done:
-                distance_m = _distance_m(walk, finder, options.threads)
-                label = " ".join(map(str, (*names.values(), *finder.values())))
-                print(f"{label}: {distance_m:.3f} m", flush=True)
-                rows = _with({**row, "distance_m": round(distance_m, 6)}, rows)
-                if options.out:
-                    _write(options.out, rows)
-            bar.update(task, advance=1)
-    return 0
+    for names, walk, finder in tasks:
+        row = {**names, **finder, "version": __version__}
+        if (*_key(row), row["version"]) in done:
+            continue
+        distance_m = _distance_m(walk, finder, options.threads)
+        label = " ".join(map(str, (*names.values(), *finder.values())))
+        print(f"{label}: {distance_m:.3f} m", flush=True)
+        rows = _with({**row, "distance_m": round(distance_m, 6)}, rows)
+        if options.out:
+            _write(options.out, rows)
 
 
-def _add_reports(options: argparse.Namespace) -> int:
+def _add_reports(options: argparse.Namespace) -> None:
     """Add the farthest walk of each agent in some reports, and print each that is added.
 
     Raises:
@@ -134,7 +136,7 @@ def _add_reports(options: argparse.Namespace) -> int:
     if options.out is None:
         raise InvalidInput("--reports needs --out, the table to which it adds their walks")
     farthest: dict[tuple[Any, ...], dict[str, Any]] = {}
-    for walk in chain.from_iterable(map(reported_walks, map(Path, split(options.reports)))):
+    for walk in chain.from_iterable(map(reported_walks, map(Path, _split(options.reports)))):
         if walk.world not in _PHYSICAL or best_known.best_known_m(walk.problem) is None:
             continue
         row = {
@@ -155,7 +157,6 @@ def _add_reports(options: argparse.Namespace) -> int:
             print(f"{' '.join(map(str, _key(row)[:-1]))}: {row['distance_m']:.3f} m", flush=True)
         rows = after
     _write(options.out, rows)
-    return 0
 
 
 def _finders(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -166,7 +167,7 @@ def _finders(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """
     for width in options.width:
         check_whole("width", width, 1, MAX_WIDTH)
-    for name in split(options.by):
+    for name in _split(options.by):
         if name in (BEAM, BONUS_BEAM):
             yield from ({"found_by": name, "width": width} for width in options.width)
             continue
@@ -193,34 +194,34 @@ def _distance_m(walk: WalkingProblem, finder: Mapping[str, Any], threads: int) -
     if name == "informed":
         budgets = [{"budget": budget} for budget in INFORMED_BUDGETS]
     lanes = race([lane(name, **settings) for settings in budgets], **problem).result.lanes
-    return max(one.total_distance_m or 0.0 for one in lanes)
+    return max(each.total_distance_m or 0.0 for each in lanes)
 
 
 def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], WalkingProblem]]:
     """Return the walking problems that were asked for, each with its names."""
-    gaits = split(options.gait)
+    gaits = _split(options.gait)
     for gait in gaits:
         if gait != OWN and gait not in NAMED_GAITS:
             raise UnknownName("gait", gait, [*NAMED_GAITS, OWN])
-    chosen = [(name, robot(name)) for name in split(options.robot)]
-    for robot_name, one in chosen:
-        for world in split(options.world):
+    chosen = [(name, robot(name)) for name in _split(options.robot)]
+    for robot_name, design in chosen:
+        for world in _split(options.world):
             walks = named_world(world)
             for gait in gaits:
-                chosen_gait = own_gait(one) if gait == OWN else gait
-                walk = WalkingProblem(gait=chosen_gait, robot=one, world=walks)
+                chosen_gait = own_gait(design) if gait == OWN else gait
+                walk = WalkingProblem(gait=chosen_gait, robot=design, world=walks)
                 name = walk.resolved_gait.name
                 yield {"robot": robot_name, "world": world, "gait": name}, walk
 
 
 def _with(row: dict[str, Any], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return a table with one more row, or with that of the same key that came farther."""
-    same = [_key(one) == _key(row) for one in rows]
-    if not any(same):
+    keys = [_key(entry) for entry in rows]
+    if _key(row) not in keys:
         return [*rows, row]
     return [
-        row if is_same and row["distance_m"] > one["distance_m"] else one
-        for one, is_same in zip(rows, same, strict=True)
+        row if key == _key(row) and row["distance_m"] > entry["distance_m"] else entry
+        for entry, key in zip(rows, keys, strict=True)
     ]
 
 
@@ -229,11 +230,20 @@ def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def _read(path: Path) -> list[dict[str, Any]]:
-    check_writable(str(path))
     return best_known.read(path) if path.exists() and path.stat().st_size else []
 
 
 def _write(path: Path, rows: list[dict[str, Any]]) -> None:
     lines = ",\n".join(f"    {json.dumps(row)}" for row in rows)
     text = f'{{\n  "computed_by": {json.dumps(_COMPUTED_BY)},\n  "distances": [\n{lines}\n  ]\n}}\n'
-    write_whole(str(path), text.encode())
+    whole = path.with_suffix(".new")
+    whole.write_text(text, "utf-8")
+    whole.replace(path)
+
+
+def _split(text: str) -> list[str]:
+    return [item.strip() for item in text.split(",")]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
