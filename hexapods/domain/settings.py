@@ -7,7 +7,7 @@ type is annotated with its limits and with a `Setting`:
 
 `declared_parameters` and `declared_fields` find the declarations. From them follow validation,
 request fields and error messages, `GET /options`, options of the command line, controls on the
-page, the grid of a sweep, the ranges of a tuning, and fields of checkpoints and archives.
+page, the grid of a sweep, and fields of checkpoints and archives.
 """
 
 import inspect

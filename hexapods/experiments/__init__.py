@@ -10,7 +10,6 @@
 - `statistics`, `measures`, `setting_results`, `summary`: interquartile means, bootstrap intervals
   and comparisons, from single results up to the summary document; `worlds`: the part of a league
   or recovery; `trial_rows`: trials as rows of a table.
-- `tuning`: search for the settings of a learner, judged on held-out seeds.
 - `published`: the paper's Table 1; `claims`: the paper's claims and their verdicts;
   `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`, `labels` and
   `failures`: numbers, names and failed trials as text.

@@ -25,7 +25,6 @@ TRIALS = "trials.jsonl"
 """JSON lines, append-only: a header, then one line per trial."""
 
 _SYNC_S = 0.5
-_GROWING = ("seeds", "candidates")
 _CHOOSE = "choose another folder"
 
 
@@ -137,12 +136,9 @@ class ResultsFolder(Progress):
         except (KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
         here = by_option(to_json(self.plan.config))
-        # Each trial's seed depends on its number only, so that more seeds extend the results; and
-        # a tuning asks for the same settings first, however many are to come.
+        # Each trial's seed depends on its number only, so that more seeds extend the results.
         every = dict.fromkeys((*here, *there))
-        names = [
-            name for name in every if name not in _GROWING and here.get(name) != there.get(name)
-        ]
+        names = [name for name in every if name != "seeds" and here.get(name) != there.get(name)]
         if "experiment" in names:
             raise InvalidInput(
                 f"{self.path} has results of another experiment, {there['experiment']}; {_CHOOSE}"

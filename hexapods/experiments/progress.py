@@ -7,10 +7,10 @@ from typing import Any
 
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.engine import run_on, run_trials
+from hexapods.experiments.engine import run_trials
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult
-from hexapods.experiments.worker import Outcome, Workers
+from hexapods.experiments.worker import Outcome
 
 
 class Progress:
@@ -44,14 +44,13 @@ class Progress:
             self.results[outcome.key] = outcome.result
             self.set_aside.pop(outcome.key, None)
 
-    def remaining(self, retry: bool = False, *, of: Iterable[Trial] | None = None) -> list[Trial]:
+    def remaining(self, retry: bool = False) -> list[Trial]:
         """Return the trials without an outcome, each once.
 
         Args:
             retry: whether also those that were set aside.
-            of: of which trials; by default of all of the plan.
         """
-        by_key = {trial.key: trial for trial in (self.plan.trials() if of is None else of)}
+        by_key = {trial.key: trial for trial in self.plan.trials()}
         done_keys = self.results.keys() if retry else self.results.keys() | self.set_aside.keys()
         return [trial for key, trial in by_key.items() if key not in done_keys]
 
@@ -59,26 +58,13 @@ class Progress:
         self, trials: Iterable[Trial], spec: ClusterSpec, may_continue: Callable[[], bool]
     ) -> Generator[Outcome, None, None]:
         """Run trials on workers, add each outcome, and yield it; see `run_trials`."""
-        yield from self._collect(lambda poll: run_trials(trials, spec, poll), may_continue)
-
-    def run_on(
-        self, workers: Workers, trials: Iterable[Trial], may_continue: Callable[[], bool]
-    ) -> Generator[Outcome, None, None]:
-        """Run trials as `run` does, on workers that are already there."""
-        yield from self._collect(lambda poll: run_on(workers, trials, poll), may_continue)
-
-    def _collect(
-        self,
-        start: Callable[[Callable[[], bool]], Generator[Outcome, None, None]],
-        may_continue: Callable[[], bool],
-    ) -> Generator[Outcome, None, None]:
         started_s = time.monotonic() - self.wall_s
 
         def poll() -> bool:
             self.wall_s = time.monotonic() - started_s
             return may_continue()
 
-        with closing(start(poll)) as outcomes:
+        with closing(run_trials(trials, spec, poll)) as outcomes:
             for outcome in outcomes:
                 self.wall_s = time.monotonic() - started_s
                 self.add(outcome)

@@ -21,13 +21,13 @@ Curves = Sequence[Points]
 """For each evaluation the distance of every seed [m]."""
 
 
-def share_to_reach(experiment: ExperimentName | None) -> float:
-    """Return the share of a reference's distance to which steps are counted; None is a tuning."""
+def share_to_reach(experiment: ExperimentName) -> float:
+    """Return the share of a reference's distance to which steps are counted."""
     return EARLIER_SHARE if experiment in ("recovery", "bodies") else REACHED_SHARE
 
 
 def compare_in_worlds(
-    settings: Sequence[SettingResults], seed: int, experiment: ExperimentName | None = None
+    settings: Sequence[SettingResults], seed: int, experiment: ExperimentName
 ) -> list[dict[str, Any]]:
     """Return an entry for each agent in each world, with the walks of its references.
 

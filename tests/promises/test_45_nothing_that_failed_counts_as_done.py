@@ -1,7 +1,7 @@
 """Promise 45: nothing that failed counts as done.
 
-Agents that raise, that end their process and that no process can import, in experiments, sweeps,
-tunings and races, in Python and on the command line: each failure is told where the result is
+Agents that raise, that end their process and that no process can import, in experiments, sweeps
+and races, in Python and on the command line: each failure is told where the result is
 returned and printed, its reason too, and the exit code is 1. In full: the same.
 """
 
@@ -152,39 +152,6 @@ def test_a_command_that_computed_a_failure_prints_it_and_exits_with_1(
     assert printed.returncode == 1, "read from its folder it has not become a success"
     assert TRIPPED in printed.stdout
     json.loads(printed.stdout)
-
-
-def test_a_tuning_of_failures_tunes_nothing_and_says_so(tmp_path: Path) -> None:
-    tune = (
-        "tune",
-        "tests.own_agents:Stumbling",
-        "--candidates",
-        "1",
-        "--seeds",
-        "1",
-        "--held-out",
-        "1",
-    )
-    done = in_process(*tune, *ON_COMMAND_LINE, "--workers", "1", folder=tmp_path)
-    assert done.returncode not in (0, 130), done.stdout
-    assert TRIPPED in done.stdout + done.stderr
-
-
-def test_a_tuning_with_a_failure_beside_it_exits_with_1(tmp_path: Path) -> None:
-    tune = ("tune", "q-learning", "--settings", "alpha", "--candidates", "2", "--seeds", "1")
-    held_out = (
-        "--held-out",
-        "1",
-        "--beside",
-        "tests.own_agents:Stumbling",
-        "--steps",
-        "10",
-        "--workers",
-        "1",
-    )
-    done = in_process(*tune, *held_out, *ON_COMMAND_LINE, folder=tmp_path)
-    assert done.returncode == 1, (done.stdout, done.stderr)
-    assert TRIPPED in done.stdout
 
 
 def test_a_training_that_fails_has_no_table(tmp_path: Path) -> None:

@@ -10,6 +10,6 @@
 - In the database: `tables`, with `trial_rows` and `migrations`; `stored_trials` decodes rows of
   trials, `archived_trials` validates those of an archive.
 - Over REST: `routes`, `request_bodies`, `response_models`; `options` are what forms need.
-- On the command line (`commands`): `experiment_command`, `sweep_command` and `tune_command`, with
+- On the command line (`commands`): `experiment_command` and `sweep_command`, with
   `trial_options` (their options) and `command_trials` (trials with a progress bar).
 """

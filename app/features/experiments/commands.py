@@ -1,7 +1,7 @@
-"""The commands `experiment`, `sweep` and `tune`."""
+"""The commands `experiment` and `sweep`."""
 
 from collections.abc import Mapping
 
 COMMANDS: Mapping[str, str] = {
-    name: f"app.features.experiments.{name}_command" for name in ("experiment", "sweep", "tune")
+    name: f"app.features.experiments.{name}_command" for name in ("experiment", "sweep")
 }
