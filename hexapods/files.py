@@ -4,6 +4,7 @@ import errno
 import io
 import os
 import sys
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
@@ -29,10 +30,11 @@ def path_of(given: object, what: str) -> Path:
     return Path(text)
 
 
-def write_atomically(path: Path, data: bytes | memoryview) -> None:
+def write_atomically(path: Path, data: bytes | memoryview | Iterable[bytes | memoryview]) -> None:
     """Write a file that is durable (fsync) on return; after a crash it is the old or the new one.
 
-    The data is written to `.{name}.part` beside the file, then renamed; a crash may leave that.
+    The data, whole or in chunks, is written to `.{name}.part` beside the file, then renamed; a
+    crash may leave that.
 
     Raises:
         OSError: if it cannot be written; no partial file is left.
@@ -40,12 +42,12 @@ def write_atomically(path: Path, data: bytes | memoryview) -> None:
     part = path.with_name(f".{path.name}.part")
     try:
         with part.open("wb") as file:
-            file.write(data)
+            file.writelines([data] if isinstance(data, bytes | memoryview) else data)
             file.flush()
             os.fsync(file.fileno())
         part.replace(path)
         sync_folder(path.parent)
-    except OSError:
+    except BaseException:
         with suppress(OSError):
             part.unlink()
         raise

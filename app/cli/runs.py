@@ -16,7 +16,7 @@ from urllib.parse import quote
 from app.cli.commands import verb_modules
 from app.cli.options import CommandParser, integer
 from app.cli.server_client import call_server
-from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
+from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading, open_for_writing
 from app.cli.terminal import show_lanes, show_table
 from app.events.run_view import run_view
 from app.settings import read_settings
@@ -153,7 +153,6 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _delete(options: argparse.Namespace) -> int:
-    from app.storage.database.opening import open_store  # noqa: PLC0415
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415
 
     settings = read_settings(data=options.data)
@@ -161,7 +160,7 @@ def _delete(options: argparse.Namespace) -> int:
     with open_for_reading(settings) as reader:
         run = find_run(reader, options.run_id)
     try:
-        with open_store(settings) as store:
+        with open_for_writing(settings) as store:
             store.delete(run.id)
     except FolderInUse:
         kind = run.kind or WALKS[0]

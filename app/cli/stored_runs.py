@@ -1,7 +1,8 @@
 """Options and functions of the commands that read runs from a data folder."""
 
 import argparse
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING
 
 from app.settings import Settings
@@ -43,3 +44,21 @@ def open_for_reading(settings: Settings) -> "AbstractContextManager[RunStore]":
     from app.storage.database.read_only import open_read_only  # noqa: PLC0415
 
     return open_read_only(settings)
+
+
+@contextmanager
+def open_for_writing(settings: Settings) -> "Iterator[RunStore]":
+    """Open the store of a data folder as a server would, with the tables of features.
+
+    Raises:
+        FolderInUse: if a server has the data folder.
+        HexapodError: as `app.storage.database.opening.open_store` and `migrate_tables`.
+    """
+    # Imported here, as above.
+    from app.active_features import migrate_tables  # noqa: PLC0415
+    from app.installed_features import load  # noqa: PLC0415
+    from app.storage.database.opening import open_store  # noqa: PLC0415
+
+    with open_store(settings) as store:
+        migrate_tables(load(settings.without).classes, store.database)
+        yield store

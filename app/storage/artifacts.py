@@ -10,7 +10,7 @@ import os
 import re
 import secrets
 import threading
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sized
 from contextlib import closing, suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -53,17 +53,32 @@ class ArtifactFiles:
         self._open: dict[str, SharedFile] = {}
         self._open_lock = threading.RLock()
 
-    def write(self, data: bytes | memoryview) -> StoredFile:
+    def write(
+        self, data: bytes | memoryview | Iterable[bytes], size: int | None = None
+    ) -> StoredFile:
         """Write data to a new file by atomic rename; it is durable (fsync) on return.
+
+        Args:
+            data: all of it, or chunks.
+            size: of chunks, about [bytes]; so much space is needed.
 
         Raises:
             StorageFull: if the quota or the disk is full; nothing is left behind then.
             StorageFailed: if it cannot be written for another reason.
         """
-        self._disk_space.check(len(data))
-        name = secrets.token_hex(16)
+        chunks = [data] if isinstance(data, bytes | memoryview) else data
+        self._disk_space.check(size or (len(data) if isinstance(data, Sized) else 0))
+        name, digest, length = secrets.token_hex(16), hashlib.sha256(), 0
+
+        def counted() -> Iterator[bytes | memoryview]:
+            nonlocal length
+            for chunk in chunks:
+                digest.update(chunk)
+                length += len(chunk)
+                yield chunk
+
         try:
-            write_atomically(self._folder / name, data)
+            write_atomically(self._folder / name, counted())
         except OSError as error:
             self.remove(name)
             if is_disk_full(error):
@@ -73,7 +88,7 @@ class ArtifactFiles:
             raise StorageFailed(
                 f"a file cannot be written to the data folder ({error.strerror})"
             ) from error
-        return StoredFile(name, len(data), hashlib.sha256(data).hexdigest())
+        return StoredFile(name, length, digest.hexdigest())
 
     def check_disk_space(self, size: int) -> None:
         """Check that `size` more bytes fit into the quota and onto the disk.
@@ -85,7 +100,7 @@ class ArtifactFiles:
 
     def read(self, stored: StoredFile, label: str) -> bytes:
         """Read a file and verify its size and SHA-256; arguments and errors as for `open`."""
-        with closing(self.open_verified(stored, label)) as reader:
+        with closing(self._open_unverified(stored, label)) as reader:
             return b"".join(_verified_chunks(reader, stored, label))
 
     def open(self, stored: StoredFile, label: str) -> ArtifactFile:
@@ -100,7 +115,7 @@ class ArtifactFiles:
             DamagedFile: if its content is not what was written.
             StorageFailed: if it cannot be read.
         """
-        reader = self.open_verified(stored, label)
+        reader = self._open_unverified(stored, label)
         try:
             for _ in _verified_chunks(reader, stored, label):
                 pass
@@ -109,8 +124,8 @@ class ArtifactFiles:
             raise
         return reader
 
-    def open_verified(self, stored: StoredFile, label: str) -> ArtifactFile:
-        """Open a file that was verified just before; arguments and errors as for `open`.
+    def _open_unverified(self, stored: StoredFile, label: str) -> ArtifactFile:
+        """Open a file without verifying it; arguments and errors as for `open`.
 
         All readers of a file share one descriptor.
         """

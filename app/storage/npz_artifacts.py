@@ -7,11 +7,9 @@ from contextlib import closing, contextmanager
 import numpy as np
 
 from app.storage.artifact_file import ReadableArtifact
-from app.storage.artifacts import StoredFile
 from app.storage.database.store import RunStore
 from app.storage.errors import StorageFailed
 from hexapods.domain.errors import DamagedFile, HexapodError
-from hexapods.runs.npz_slices import CompressedFile
 from hexapods.runs.recording import Arrays
 
 
@@ -23,13 +21,11 @@ def decoding(label: str) -> Iterator[None]:
         label: name of the file for error messages.
 
     Raises:
-        DamagedFile: if it cannot be decoded; CompressedFile if it is not in parts.
+        DamagedFile: if it cannot be decoded.
         StorageFailed: if it cannot be read.
     """
     try:
         yield
-    except CompressedFile as error:
-        raise CompressedFile(f"{label} cannot be read in parts: {error}") from error
     except (HexapodError, MemoryError):
         raise
     except OSError as error:
@@ -57,12 +53,10 @@ def read_arrays(store: RunStore, run_id: str, name: str) -> Arrays | None:
         return dict(arrays)
 
 
-def put_arrays(
-    store: RunStore, run_id: str, name: str, arrays: Arrays, *, replaces_all: bool = False
-) -> StoredFile:
+def put_arrays(store: RunStore, run_id: str, name: str, arrays: Arrays) -> None:
     """Store arrays as a file of a run; see `RunStore.put_artifact`."""
     # Uncompressed: compression saves a tenth of the size and takes a hundred times as long.
     buffer = io.BytesIO()
     np.savez(buffer, **arrays)  # type: ignore[arg-type]
     with buffer.getbuffer() as data:  # no copy
-        return store.put_artifact(run_id, name, data, replaces_all=replaces_all)
+        store.put_artifact(run_id, name, data)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from app.storage.database.store import RunStore
 from app.storage.errors import NotFound
-from app.storage.stored_races import GrowingRace, StoredRaces
+from app.storage.stored_races import GrowingRace, read_race, stored_chunks
 from app.storage.stored_trainings import GrowingTraining, read_log, read_training
 from hexapods.domain.errors import HexapodError
 from hexapods.runs.recording import LaneRecording, PracticeRecording
@@ -41,12 +41,11 @@ class Recordings:
         """Use the recordings of a store."""
         self._store = store
         self._growing: dict[str, GrowingTraining | GrowingRace] = {}
-        self._stored_races = StoredRaces(store)
         self._trainings = _LruCache[PracticeRecording](
             lambda run_id: read_training(store, run_id, is_whole=False), attrgetter("size")
         )
         self._races = _LruCache[list[LaneRecording]](
-            self._stored_races.read, lambda lanes: sum(one.size for one in lanes)
+            lambda run_id: read_race(store, run_id), lambda lanes: sum(lane.size for lane in lanes)
         )
         self._logs = _LruCache[TransitionLog](
             lambda run_id: read_log(store, run_id), lambda log: BYTES_PER_STEP * len(log)
@@ -72,9 +71,9 @@ class Recordings:
 
         Raises:
             NotFound: if there is no such run.
-            DamagedFile: if a file is damaged.
+            DamagedFile: if the file is damaged.
         """
-        return self._stored_races.chunks(run_id)
+        return stored_chunks(self._store, run_id)
 
     def transitions(self, run_id: str) -> TransitionLog | None:
         """Return the log of a training's transitions; None if there is none, or it is damaged."""
@@ -103,17 +102,13 @@ class Recordings:
     def begin_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
         """Start the recordings of a race's lanes.
 
-        The files of an earlier attempt stay until the first one of this attempt is stored.
+        The file of an earlier attempt stays until that of this attempt is stored.
         """
-        self._growing[run_id] = GrowingRace(self._stored_races, run_id, lanes)
+        self._growing[run_id] = GrowingRace(self._store, run_id, lanes)
         self._races.drop(run_id)
 
     def add(self, run_id: str, record: Any) -> None:
-        """Append a record to a run's recording; records without motion are ignored.
-
-        Raises:
-            StorageFull, StorageFailed: if a part of a race that is complete cannot be stored.
-        """
+        """Append a record to a run's recording; records without motion are ignored."""
         if isinstance(record, LaneStep | LaneFailed | StepTaken | Evaluated):
             self._growing[run_id].add(record)  # type: ignore[arg-type]  # a run's own kind
 

@@ -7,7 +7,8 @@
   independent random generators from one seed.
 - `clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
 - `recording` stores motion for playback; `stored_practice` encodes a training's recording as
-  arrays, `race_file` a race's, with `step_figures`; `npz_slices` reads parts of such arrays;
+  arrays, `race_file` a race's, by `step_arrays`; `step_figures` are figures of all steps as one
+  array; `npz_slices` reads parts of a table's arrays;
   `recorded_walk` reads all of them alike.
 - `gait_analysis` computes footfalls, speed, cycle, posture and energy of a recorded walk,
   `footfall` when its feet are on the ground; `move_comparison` compares each step with the best.

@@ -10,35 +10,8 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.domain.errors import DamagedFile
-
 _LOCAL_HEADER = struct.Struct("<4s5H3I2H")
 _SUFFIX = ".npy"
-
-
-class CompressedFile(DamagedFile):
-    """A file that is compressed, and so can be read only as a whole."""
-
-
-class ArraySlices:
-    """Arrays in memory, of which parts are read."""
-
-    def __init__(self, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Take arrays by their names."""
-        self._arrays = arrays
-
-    def __contains__(self, name: object) -> bool:
-        """Whether there is an array of this name."""
-        return name in self._arrays
-
-    def length(self, name: str) -> int:
-        """Return the length of an array."""
-        return len(self._arrays[name])
-
-    def rows(self, name: str, first: int = 0, end: int | None = None) -> NDArray[Any]:
-        """Return a part of an array, or all of one without dimensions."""
-        array = self._arrays[name]
-        return array[first:end] if array.ndim else array
 
 
 class _Array(NamedTuple):
@@ -54,20 +27,18 @@ class NpzSlices:
         arrays: by their names where they are, and their shapes and types.
     """
 
-    def __init__(self, file: IO[bytes], known: "NpzSlices | None" = None) -> None:
+    def __init__(self, file: IO[bytes]) -> None:
         """Read where its arrays are.
 
         Args:
             file: the file, which can be sought in; the caller closes it.
-            known: what was read of the same file before; None if nothing was.
 
         Raises:
-            CompressedFile: if an array is compressed.
-            ValueError: if an array overlaps another, or can be read only as a whole.
+            ValueError: if an array is compressed, overlaps another, or can be read only as a whole.
                 zipfile and NumPy raise other exceptions for a damaged file.
         """
         self._file, self._lock = file, threading.Lock()
-        self.arrays: Mapping[str, _Array] = _arrays_of(file) if known is None else known.arrays
+        self.arrays: Mapping[str, _Array] = _arrays_of(file)
 
     def __contains__(self, name: object) -> bool:
         """Whether there is an array of this name."""
@@ -106,7 +77,7 @@ def _arrays_of(file: IO[bytes]) -> dict[str, _Array]:
     with zipfile.ZipFile(file) as archive:
         members = archive.infolist()
         if any(member.compress_type != zipfile.ZIP_STORED for member in members):
-            raise CompressedFile("its members are compressed; write it with numpy.savez")
+            raise ValueError("its members are compressed; write it with numpy.savez")
         if sum(member.file_size for member in members) > file.seek(0, io.SEEK_END):
             raise ValueError("its members claim to be larger than the file")
         return {
@@ -134,7 +105,3 @@ def _array(whole: IO[bytes], archive: zipfile.ZipFile, member: zipfile.ZipInfo) 
     *_, name, extra = _LOCAL_HEADER.unpack(whole.read(_LOCAL_HEADER.size))
     begin = member.header_offset + _LOCAL_HEADER.size + name + extra
     return _Array(begin + header, shape, dtype)
-
-
-Slices = ArraySlices | NpzSlices
-"""Arrays of which parts are read."""

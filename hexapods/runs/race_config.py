@@ -10,14 +10,15 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import Record
 from hexapods.domain.settings import Setting, declared_fields
 from hexapods.domain.short_repr import short_repr
+from hexapods.domain.text import counted
 from hexapods.runs.config import RACE_STEPS, Seed, WalkingProblem
 from hexapods.runs.lane import LaneConfig
 
 MAX_LANES = 6
 MAX_ID = 64
 """Maximum length of a run's id."""
-MAX_RACE_STEPS = 300_000
-"""Maximum of steps, summed over a race's lanes: every step is recorded, in about 3 kB."""
+MAX_RACE_STEPS = 20_000
+"""Maximum of steps, summed over a race's lanes: each is recorded, in about 6 kB of memory."""
 
 RaceSteps = Annotated[
     int,
@@ -93,6 +94,8 @@ class RaceConfig(WalkingProblem):
             raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
         if self.steps * len(self.lanes) > MAX_RACE_STEPS:
             raise InvalidInput(
-                f"a race records every step, so steps times lanes must be at most "
-                f"{MAX_RACE_STEPS:,}, not {self.steps * len(self.lanes):,}"
+                f"a race records every step in memory, so steps times lanes must be at most "
+                f"{MAX_RACE_STEPS:,}, not {self.steps * len(self.lanes):,}: with "
+                f"{counted(len(self.lanes), 'lane')} give at most "
+                f"{MAX_RACE_STEPS // len(self.lanes):,} steps"
             )

@@ -1,8 +1,6 @@
 """Recordings: joint positions over time, observations and actions, for live view and replay.
 
-A recording is append-only. The live view shows its tail; a replay shows it from the start. Of a
-race only the figures of the steps (`step_figures`) stay in memory; what else there is of its older
-steps is in files, and read when it is asked for.
+A recording is append-only. The live view shows its tail; a replay shows it from the start.
 """
 
 import hashlib
@@ -10,8 +8,8 @@ from bisect import bisect_right
 from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from operator import attrgetter
-from typing import Any, Protocol, overload
+from operator import itemgetter
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +17,7 @@ from numpy.typing import NDArray
 from hexapods.domain.simulator import Motion
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs.records import ActionValues, Evaluated, LaneStep, StepTaken
+from hexapods.runs.step_arrays import StepArrays
 from hexapods.runs.step_figures import GrowingArray, Rows, columns_of, no_figures, rows_of
 
 Arrays = dict[str, NDArray[Any]]
@@ -26,23 +25,8 @@ _STEP_OVERHEAD_BYTES = 1000
 """Approximate size of a step in memory besides its motion."""
 
 
-class StoredSteps(Protocol):
-    """Consecutive steps of a lane that can be read."""
-
-    @property
-    def first(self) -> int:
-        """Number of the lane's steps before the first of them."""
-
-    def step(self, index: int) -> LaneStep:
-        """Return the step of an index of the lane, from 0 on.
-
-        Raises:
-            HexapodError: if it cannot be read (any more).
-        """
-
-
 class LaneSteps(Sequence[LaneStep]):
-    """The steps of a lane: of all their figures, of the newest all, and the rest in files.
+    """The steps of a lane, and their figures as one array.
 
     One thread appends, others read without a lock.
     """
@@ -50,18 +34,19 @@ class LaneSteps(Sequence[LaneStep]):
     def __init__(self, steps: Iterable[LaneStep] = ()) -> None:
         """Take the first steps."""
         self._figures = GrowingArray(no_figures())
-        self._stored: list[StoredSteps] = []
+        self._packed: list[tuple[int, StepArrays]] = []
+        """Blocks of steps as arrays, each with the number of steps before it."""
         self._newest: tuple[int, list[LaneStep]] = (0, [])
-        """The number of stored steps, and those that follow them."""
+        """The number of packed steps, and those that follow them."""
         for step in steps:
             self.append(step)
 
     @classmethod
-    def read(cls, figures: Rows, stored: Iterable[StoredSteps]) -> "LaneSteps":
-        """Return steps that are all stored, in order; `figures` has a row of each."""
+    def read(cls, stored: StepArrays) -> "LaneSteps":
+        """Return the steps of a file."""
         steps = cls()
-        steps._figures = GrowingArray(figures)
-        steps._stored, steps._newest = list(stored), (len(figures), [])
+        steps._figures = GrowingArray(rows_of(stored.columns, no_figures()))
+        steps._packed, steps._newest = [(0, stored)], (len(stored), [])
         return steps
 
     def append(self, step: LaneStep) -> None:
@@ -72,21 +57,40 @@ class LaneSteps(Sequence[LaneStep]):
         # The figures count, so last.
         self._figures.extend(rows_of(columns_of(step), self._figures.rows))
 
-    def store(self, stored: StoredSteps, count: int) -> None:
-        """Forget the oldest steps in memory, of which `count` are stored now."""
-        first, newest = self._newest
-        self._stored.append(stored)
-        self._newest = first + count, newest[count:]
+    def pack(self, lane: int, at_least: int = 1) -> None:
+        """Pack the newest steps of a lane as arrays, which takes half of the memory.
 
-    @property
-    def stored(self) -> int:
-        """Number of steps that are stored."""
-        return self._newest[0]
+        Action values are rounded to single precision, as in a file.
+
+        Args:
+            lane: number of the lane.
+            at_least: number of steps that are worth it.
+        """
+        first, newest = self._newest
+        if len(newest) >= at_least:
+            self._packed.append((first, StepArrays.packed(lane, newest)))
+            self._newest = first + len(newest), []
+
+    def blocks(self, lane: int) -> list[StepArrays]:
+        """Return all steps so far as arrays."""
+        count, blocks = len(self), []
+        for first, block in self._packed:
+            if first + len(block) <= count:
+                blocks.append(block)
+        rest = self[sum(map(len, blocks)) : count]
+        return [*blocks, StepArrays.packed(lane, rest)] if rest else blocks
 
     @property
     def figures(self) -> Rows:
         """Figures of all steps so far, a row each; see `hexapods.runs.step_figures`."""
         return self._figures.rows
+
+    @property
+    def size(self) -> int:
+        """Approximate size in memory [bytes]."""
+        packed = sum(block.nbytes for _, block in list(self._packed))
+        newest = sum(_size_of(s.motion, s.action_values) for s in list(self._newest[1]))
+        return self.figures.nbytes + packed + newest
 
     def choices(self, newest: int) -> list[tuple[Cells, Action]]:
         """Return what was observed and done in the newest steps, at most so many, in order."""
@@ -99,7 +103,7 @@ class LaneSteps(Sequence[LaneStep]):
         steps = LaneSteps()
         # The figures first: the others have at least as many steps.
         steps._figures = GrowingArray(self.figures[:most])
-        steps._newest, steps._stored = self._newest, self._stored
+        steps._newest, steps._packed = self._newest, self._packed
         return steps
 
     def __len__(self) -> int:
@@ -113,7 +117,7 @@ class LaneSteps(Sequence[LaneStep]):
     def __getitem__(self, index: slice) -> list[LaneStep]: ...
 
     def __getitem__(self, index: int | slice) -> LaneStep | list[LaneStep]:
-        """Return a step, or several; raises as `StoredSteps.step`."""
+        """Return a step, or several."""
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         number = index + len(self) if index < 0 else index
@@ -122,8 +126,8 @@ class LaneSteps(Sequence[LaneStep]):
         first, newest = self._newest
         if number >= first:
             return newest[number - first]
-        place = bisect_right(self._stored, number, key=attrgetter("first")) - 1
-        return self._stored[place].step(number)
+        before, block = self._packed[bisect_right(self._packed, number, key=itemgetter(0)) - 1]
+        return block.step(number - before, before)
 
 
 class LaneRecording:
@@ -174,9 +178,7 @@ class LaneRecording:
     @property
     def size(self) -> int:
         """Approximate size in memory [bytes]."""
-        newest = self.steps[self.steps.stored :]
-        held = sum(_size_of(step.motion, step.action_values) for step in newest)
-        return self.steps.figures.nbytes + held
+        return self.steps.size
 
 
 _NOT_HASHED = ("decision_s", "lowest", "highest")

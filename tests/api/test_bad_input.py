@@ -97,7 +97,7 @@ WRONG_RACES: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"lanes": [{"color": "red"}]}, ("color", "training_id")),
     ({"lanes": [{}]}, ("lanes.0.agent", "missing")),
     ({"lanes": "three"}, ("lanes",)),
-    ({"steps": 10**7}, ("300,000",)),
+    ({"steps": 10**7}, ("20,000",)),
     ({"steps": 0}, ("steps",)),
     ({"pace": 1}, ("pace", "lanes")),
     ({"robot": {"n_legs": 12}, "divisions": 8, "grid_side_m": 0.01}, ("64,000,000", "divisions")),

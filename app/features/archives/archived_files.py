@@ -1,6 +1,5 @@
 """Artifact files of a run in its archive: select them for export, validate them on import."""
 
-import io
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
@@ -15,7 +14,7 @@ from app.storage.database.store import RunStore
 from app.storage.imported_tables import checked_table
 from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
 from app.storage.run_kind import added_kind
-from app.storage.stored_races import MAX_RACE_FILES, race_file
+from app.storage.stored_races import RACE
 from app.storage.stored_trainings import (
     PRACTICE,
     TRANSITIONS_PER_FILE,
@@ -34,12 +33,12 @@ from app.storage.untrusted_input import (
 from hexapods.domain.errors import DamagedFile, HexapodError
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.simulator import Motion
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import Action, Cells
 from hexapods.runs import tables
 from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
-from hexapods.runs.npz_slices import NpzSlices
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.race_file import BLOCK_STEPS, RaceFile
+from hexapods.runs.race_file import race_recording
 from hexapods.runs.records import ActionValues, LaneStep
 from hexapods.runs.results import TrainingResult
 from hexapods.runs.stored_practice import practice_recording
@@ -51,7 +50,6 @@ _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
 _TIME_TOLERANCE, _MIN_QUATERNION = 1.001, 0.5
 """For sums of rounded times, and for rounded unit quaternions."""
 _TRANSITIONS = re.compile(r"transitions-\d{4}\.npz", re.ASCII)
-_RACE_FILES = tuple(map(race_file, range(MAX_RACE_FILES)))
 
 
 def is_file_of(name: str, kind: str) -> bool:
@@ -59,7 +57,7 @@ def is_file_of(name: str, kind: str) -> bool:
     if (added := added_kind(kind)) is not None:
         return added.is_member(name)
     if kind == "race":
-        return name in _RACE_FILES
+        return name == RACE
     is_numbered = _EVALUATIONS.fullmatch(name) or _TRANSITIONS.fullmatch(name)
     return name in (TABLE, CHECKPOINT, PRACTICE) or is_numbered is not None
 
@@ -70,7 +68,7 @@ def members_of(store: RunStore, run: Run) -> dict[str, Member]:
     Raises:
         DamagedFile: if one is damaged or missing.
     """
-    names = list(_RACE_FILES)
+    names = [RACE]
     if (kind := added_kind(run.kind)) is not None:
         names = list(kind.file_names(run))
     if run.kind == "training":
@@ -146,29 +144,19 @@ def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
 
 
 def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
-    names = [name for name in _RACE_FILES if name in files]
-    if names != list(_RACE_FILES[: len(names)]):
-        raise ValueError("a part of it is missing")
-    taken, decided_s = [0] * len(config.lanes), [0.0] * len(config.lanes)
-    for name in names:
-        # A part at a time: its steps take several times as much memory as their file.
-        file = RaceFile(NpzSlices(io.BytesIO(files[name])))
-        msgspec.convert([head.failure for head in file.heads], list[PortableText | None])
-        if [head.agent for head in file.heads] != [lane.agent for lane in config.lanes]:
-            raise ValueError("it has other lanes")
-        for lane, head in enumerate(file.heads):
-            if head.first != taken[lane]:
-                raise ValueError("its parts do not follow each other")
-            taken[lane] += head.steps
-            if taken[lane] > config.steps:
-                raise ValueError("it has more steps than the race")
-            _check_poses(head.rest_qpos[None], config)
-            for first in range(0, head.steps, BLOCK_STEPS):
-                part = file.part(lane, first, min(first + BLOCK_STEPS, head.steps))
-                for step in part.all():
-                    decided_s[lane] += step.decision_s
-                    _check_lane_step(step, config)
-    msgspec.convert(decided_s, list[Seconds])
+    if RACE not in files:
+        return
+    lanes = race_recording(tables.read_arrays(files[RACE]))
+    msgspec.convert([lane.failure for lane in lanes], list[PortableText | None])
+    if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
+        raise ValueError("it has other lanes")
+    for lane in lanes:
+        if len(lane.steps) > config.steps:
+            raise ValueError("it has more steps than the race")
+        _check_poses(lane.rest_qpos[None], config)
+        for step in lane.steps:
+            _check_lane_step(step, config)
+        msgspec.convert(ordered_sum(step.decision_s for step in lane.steps), Seconds)
 
 
 def _check_lane_step(step: LaneStep, config: RaceConfig) -> None:

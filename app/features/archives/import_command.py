@@ -10,7 +10,7 @@ from typing import Any
 from app.cli.files import read_bounded
 from app.cli.options import CommandParser
 from app.cli.server_client import call_server
-from app.cli.stored_runs import add_data
+from app.cli.stored_runs import add_data, open_for_writing
 from app.features.archives.archive import MAX_BYTES
 from app.settings import Settings, read_settings
 from hexapods.runs.config import usable_agents
@@ -44,18 +44,13 @@ def run(options: argparse.Namespace) -> int:
 
 def _import(settings: Settings, data: bytes, label: str) -> list[dict[str, Any]]:
     # Imported here, as the database modules would slow the start of other commands.
-    from app.active_features import migrate_tables  # noqa: PLC0415
     from app.events.run_view import run_view  # noqa: PLC0415
     from app.features.archives.transfer import import_runs  # noqa: PLC0415
-    from app.installed_features import load  # noqa: PLC0415
-    from app.storage.database.opening import open_store  # noqa: PLC0415
     from app.storage.run_ids import RunIds  # noqa: PLC0415
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415
 
     try:
-        with open_store(settings) as store:
-            # A run may have rows of a feature, whose tables only a server would have made.
-            migrate_tables(load(settings.without).classes, store.database)
+        with open_for_writing(settings) as store:
             runs = import_runs(store, data, RunIds.of(store), usable_agents(), label)
             return [run_view(run) for run in runs]
     except FolderInUse:

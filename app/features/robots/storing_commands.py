@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
 from app.cli.server_client import call_server
-from app.cli.stored_runs import add_data, open_for_reading
+from app.cli.stored_runs import add_data, open_for_reading, open_for_writing
 from app.settings import Settings, read_settings
 from hexapods.domain.errors import InvalidInput, UnknownName
 
@@ -131,12 +131,11 @@ def _changed(
     request: tuple[str, str, bytes | None],
 ) -> Any:
     """Make a change, by the running server if there is one; return the robot as in its answers."""
-    from app.storage.database.opening import open_store  # noqa: PLC0415
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415
     from hexapods.domain.records import to_json  # noqa: PLC0415
 
     try:
-        with open_store(settings) as store:
+        with open_for_writing(settings) as store:
             changed = work(store)
             return None if changed is None else to_json(changed)
     except FolderInUse:

@@ -1,6 +1,6 @@
 """Artifacts: rows in the database that name files beside it."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any, TypeVar
 
@@ -27,8 +27,8 @@ class Artifacts:
         """Insert the rows of written files, by their names."""
         now = datetime.now(UTC)
         rows = [
-            {"run_id": run_id, "name": name, "written_at": now, **one._asdict()}
-            for name, one in stored.items()
+            {"run_id": run_id, "name": name, "written_at": now, **file._asdict()}
+            for name, file in stored.items()
         ]
         if rows:
             connection.execute(insert(ARTIFACTS), rows)
@@ -37,26 +37,20 @@ class Artifacts:
         self,
         run_id: str,
         name: str,
-        data: bytes | memoryview,
+        data: bytes | memoryview | Iterable[bytes],
         columns: Mapping[str, Any],
-        *,
-        replaces_all: bool,
-    ) -> StoredFile:
+        size: int | None = None,
+    ) -> None:
         """Store a file of the run and set columns of the run's row, atomically.
 
-        Replaces the file that had this name, or all files of the run.
-
-        Returns:
-            the new file.
+        Replaces the file that had this name.
 
         Raises:
             NotFound: if there is no such run.
             StorageFull: if there is too little disk space.
         """
-        stored = self._files.write(data)
-        is_former = ARTIFACTS.c.run_id == run_id
-        if not replaces_all:
-            is_former &= ARTIFACTS.c.name == name
+        stored = self._files.write(data, size)
+        is_former = and_(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
 
         def work(connection: Connection) -> Sequence[str]:
             fetch_run_row(connection, run_id, for_update=True)
@@ -79,7 +73,6 @@ class Artifacts:
             raise
         # After a retried commit the new file itself is among the former ones.
         self._files.remove(*(name for name in former if name != stored.file))
-        return stored
 
     def read(self, run_id: str, name: str, read: Callable[[StoredFile, str], T]) -> T | None:
         """Read a file of the run with `read(file, label)`; None if it has no file of this name.

@@ -1,6 +1,6 @@
 """The run store: rows in SQLite or PostgreSQL, artifacts in files beside it."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
@@ -59,7 +59,6 @@ from app.storage.run import (
     robots_of,
 )
 from app.storage.sessions import SessionRows
-from hexapods.domain.errors import DamagedFile
 
 _IDS_AT_ONCE = 1_000
 _INTERRUPTED_ERROR = "The server ended before the run did."
@@ -374,17 +373,21 @@ class RunStore:
         self,
         run_id: str,
         name: str,
-        data: bytes | memoryview,
+        data: bytes | memoryview | Iterable[bytes],
         *,
-        replaces_all: bool = False,
+        size: int | None = None,
         **fields: Any,
-    ) -> StoredFile:
+    ) -> None:
         """Store a file of the run and set fields of the run, atomically.
 
-        Replaces the file that had this name, or all files of the run.
+        Replaces the file that had this name.
 
-        Returns:
-            the new file.
+        Args:
+            run_id: of the run.
+            name: of the file.
+            data: all of it, or chunks.
+            size: of chunks, about [bytes].
+            **fields: of the run.
 
         Raises:
             NotFound: if there is no such run.
@@ -392,9 +395,8 @@ class RunStore:
         """
         self.get(run_id)
         columns = encode_fields(fields)
-        stored = self._artifacts.put(run_id, name, data, columns, replaces_all=replaces_all)
+        self._artifacts.put(run_id, name, data, columns, size)
         self._invalidate_progress(run_id, fields)
-        return stored
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """Return the content of a file of the run; None if it has no file of this name."""
@@ -414,25 +416,6 @@ class RunStore:
             NotFound: if there is no such run.
         """
         return self._artifacts.files_of(run_id)
-
-    def open_file(
-        self, stored: StoredFile, label: str, *, is_verified: bool = False
-    ) -> ArtifactFile:
-        """Open a file that a run has, or had, for reading in chunks. The caller closes it.
-
-        Args:
-            stored: the file.
-            label: name of the file for error messages.
-            is_verified: whether it was verified just before, which takes reading all of it.
-
-        Raises:
-            DamagedFile: if it is damaged, or not there: also if it was replaced or deleted.
-        """
-        opened = self.files.open_verified if is_verified else self.files.open
-        try:
-            return opened(stored, label)
-        except FileNotFoundError as error:
-            raise DamagedFile(f"{label} was replaced or deleted, or it is missing") from error
 
     def interrupt_all(self) -> Sequence[str]:
         """Mark every unended run as interrupted, after the server that ran it crashed.

@@ -14,13 +14,12 @@ import pytest
 
 from app.features.archives import archive
 from app.features.archives.transfer import RUN, export_many, import_runs
-from app.storage import stored_races
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.stored_races import RACE, race_file
+from app.storage.stored_races import RACE
 from app.storage.stored_trainings import PRACTICE, evaluations_file, transitions_file
 from hexapods.agents.registry import OURS
 from hexapods.domain.disturbances import SensorNoise
@@ -130,32 +129,6 @@ def test_export_and_import_preserve_everything(
             assert was is not None
             assert [s.step for s in practised.steps] == [s.step for s in was.steps]
             assert len(practised.evaluations) == len(was.evaluations) == 24
-
-
-def test_a_long_race_is_archived_in_its_files(
-    source: RunStore, store: RunStore, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(stored_races, "FILE_STEPS", 6)
-    race = ended_race(source, "00000000000r2", TRAINING)
-    names = [race_file(number) for number in range(3)]
-    data = export_run(source, race.id)
-    run = imported(data, store)
-
-    assert all(store.artifact(run.id, name) == source.artifact(race.id, name) for name in names)
-    lanes, were = Recordings(store).race(run.id), Recordings(source).race(race.id)
-    assert lanes is not None
-    assert were is not None
-    assert [len(lane.steps) for lane in lanes] == [8, 8]
-    same = zip(race_arrays(lanes).values(), race_arrays(were).values(), strict=True)
-    assert all(one.tobytes() == other.tobytes() for one, other in same)
-    for changed in (
-        {"race-0001_npz": None},
-        {"race_npz": None},
-        {"race-0001_npz": source.artifact(race.id, names[2])},
-        {"race-0003_npz": source.artifact(race.id, names[2])},
-    ):
-        assert "cannot be shown" in refusal(repacked(data, **changed))
-    source.delete(race.id)
 
 
 def test_tags_and_notes_are_archived_and_checked(source: RunStore, store: RunStore) -> None:

@@ -34,8 +34,8 @@ def test_empty_file_is_refused(was_used: bool, tmp_path: Path) -> None:
     assert_refused(tmp_path, "is empty.*put a backup of it back.*move it away")
     done = hexapods("doctor", "--data", ".", "--json", folder=tmp_path, HEXAPODS_PORT="0")
     checks = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
-    assert not checks["database"]["ok"]
-    assert "move it away" in checks["database"]["said"]
+    assert not checks["data"]["ok"]
+    assert "move it away" in checks["data"]["said"]
     (tmp_path / DATABASE_FILE).rename(tmp_path / "moved away")
     with opened(tmp_path, None) as store:
         assert store.list().items == []
