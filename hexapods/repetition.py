@@ -222,7 +222,7 @@ def experiment(
         NotKept: if a result cannot be written to the folder.
     """
     given = given_of(locals(), _FIELDS, "settings")
-    from hexapods.experiments.summary import summarise  # noqa: PLC0415  # SciPy takes a second
+    from hexapods.experiments.summary import summarise  # noqa: PLC0415  # slow to import
 
     check_callable("on_trial", on_trial)
     check_main_module()

@@ -2,7 +2,7 @@
 
 A feature adds a kind by a module `app/features/NAME/run_kind.py` with an `AddedKind` as `KIND`, and
 another package by an entry point of the group `hexapods.run_kinds` that names such a module. The
-command line and worker processes read it too, so it imports neither FastAPI nor SciPy.
+command line and worker processes read it too, so it does not import FastAPI.
 """
 
 from abc import ABC, abstractmethod

@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import PLAIN_SEED, PROTOCOLS, BestKnown
 from hexapods.benchmarking.runs import Run, RunResult, TaskPlan
+from hexapods.benchmarking.scores import scores_of
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import from_json, to_json
@@ -32,8 +33,6 @@ def score_content(
     best_known: Mapping[str, BestKnown | str],
 ) -> dict[str, Any]:
     """Return the content of a score file; arguments as of `scores_of`."""
-    from hexapods.benchmarking.scores import scores_of  # noqa: PLC0415  # SciPy takes a second
-
     plain = to_json(config)
     return {
         "format": FORMAT,

@@ -125,7 +125,7 @@ def _iqm(strata: Sequence[FloatArray]) -> Interval:
     """
 
     def of_seeds(*chosen: FloatArray, axis: int = -1) -> FloatArray:
-        del axis  # SciPy resamples along the last one
+        del axis  # it is the last one
         runs = [
             np.moveaxis(scores[:, seeds.astype(np.int64)], 0, -1)  # (…, seeds, budgets)
             for scores, seeds in zip(strata, chosen, strict=True)

@@ -1,15 +1,16 @@
 """Statistics over many seeds: interquartile means, bootstrap intervals, probability of improvement.
 
 Shares of seeds have Wilson intervals. The method is that of Agarwal et al., "Deep RL at the edge
-of the statistical precipice" (2021).
+of the statistical precipice" (2021). NumPy alone computes it, to the same bits as `scipy.stats`:
+SciPy takes more room than all else that the product needs.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from hexapods.domain.types import FloatArray
 
@@ -25,7 +26,10 @@ MIN_RESAMPLED = 5
 """With fewer seeds a bootstrap interval is shown, but decides nothing: it is much too narrow."""
 _MAX_BATCH_NUMBERS = 4_000_000
 _CACHE_SIZE = 20_000
-_PERCENT = 100.0
+_TRIMMED = 0.25
+"""Share of the samples that an interquartile mean drops at each end."""
+_NORMAL_QUANTILE = 1.959963984540054
+"""Of the standard normal distribution, between `CONFIDENCE` of it: its 97.5 % quantile."""
 
 
 class Interval(NamedTuple):
@@ -75,7 +79,11 @@ def iqm(samples: FloatArray, axis: int = -1) -> FloatArray:
         samples: (…, n, …).
         axis: the axis of the n seeds, which is reduced.
     """
-    return np.asarray(stats.trim_mean(samples, 0.25, axis=axis), dtype=np.float64)
+    rows = np.moveaxis(np.asarray(samples, dtype=np.float64), axis, -1)
+    n = rows.shape[-1]
+    cut = int(_TRIMMED * n)
+    partitioned = np.partition(rows, (cut, n - cut - 1), axis=-1)
+    return np.asarray(partitioned[..., cut : n - cut].mean(axis=-1), dtype=np.float64)
 
 
 def pooled_iqm(*samples: FloatArray, axis: int = -1) -> FloatArray:
@@ -115,17 +123,32 @@ def interval(
     value = float(statistic(*arrays))
     if min(len(points) for points in strata) < MIN_SEEDS:
         return Interval(value)
-    confidence_interval = stats.bootstrap(
-        arrays,
-        statistic,
-        n_resamples=RESAMPLES,
-        batch=max(1, _MAX_BATCH_NUMBERS // sum(len(points) for points in strata)),
-        confidence_level=confidence,
-        method="percentile",
-        vectorized=True,
-        rng=np.random.default_rng(seed),
-    ).confidence_interval
-    return Interval(value, float(confidence_interval.low), float(confidence_interval.high))
+    resampled = np.sort(np.concatenate([*_resampled(arrays, statistic, seed)], axis=-1))
+    tail = (1 - confidence) / 2
+    return Interval(value, _quantile(resampled, tail), _quantile(resampled, 1 - tail))
+
+
+def _resampled(
+    strata: Sequence[FloatArray], statistic: Callable[..., FloatArray], seed: int
+) -> Iterator[FloatArray]:
+    """Yield a statistic of `RESAMPLES` resamples, in batches (k,) that fit into memory."""
+    rng = np.random.default_rng(seed)
+    batch = max(1, _MAX_BATCH_NUMBERS // sum(len(points) for points in strata))
+    for first in range(0, RESAMPLES, batch):
+        count = min(batch, RESAMPLES - first)
+        yield statistic(
+            *(points[rng.integers(0, len(points), (count, len(points)))] for points in strata),
+            axis=-1,
+        )
+
+
+def _quantile(ascending: FloatArray, probability: float) -> float:
+    """Return a quantile of sorted numbers (n,), by linear interpolation (Hyndman and Fan, 7)."""
+    n = len(ascending)
+    place = probability * n + (1 - probability)
+    below, fraction = int(place // 1) - 1, place % 1
+    upper = ascending[min(below + 1, n - 1)]
+    return float((1 - fraction) * ascending[below] + fraction * upper)
 
 
 def paired_interval(
@@ -189,7 +212,7 @@ def share(hits: int, of: int, ties: int = 0) -> Interval:
     value = (hits + ties / 2) / of
     if of < MIN_SEEDS:
         return Interval(value)
-    return Interval(value, _wilson(hits, of).low, _wilson(hits + ties, of).high)
+    return Interval(value, _wilson(hits, of)[0], _wilson(hits + ties, of)[1])
 
 
 def share_ahead(points: Sequence[float], baseline: float) -> Interval:
@@ -231,7 +254,10 @@ def improvement(
 
 def quantile_of(published: float, points: Sequence[float]) -> float:
     """Return the share of seeds below a published value; a seed equal to it counts half."""
-    return float(stats.percentileofscore(points, published, kind="mean")) / _PERCENT
+    samples = np.asarray(points)
+    halves = np.count_nonzero(samples < published) + np.count_nonzero(samples <= published)
+    # Rounded as a percentage, which the reports that exist have.
+    return float(halves * (50.0 / len(points))) / 100.0
 
 
 def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verdict:
@@ -248,10 +274,34 @@ def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verd
 def _probability(a: FloatArray, b: FloatArray, axis: int) -> FloatArray:
     """Return P(a > b) + P(a = b)/2 along an axis, by the Mann-Whitney U statistic."""
     n, m = a.shape[axis], b.shape[axis]
-    ranks = stats.rankdata(np.concatenate([a, b], axis=axis), axis=axis)
-    over = np.take(ranks, range(n), axis=axis).sum(axis=axis) - n * (n + 1) / 2
+    ranks = _ranks(np.moveaxis(np.concatenate([a, b], axis=axis), axis, -1))
+    over = ranks[..., :n].sum(axis=-1) - n * (n + 1) / 2
     return np.asarray(over / (n * m), dtype=np.float64)
 
 
-def _wilson(hits: int, of: int) -> Any:
-    return stats.binomtest(hits, of).proportion_ci(confidence_level=CONFIDENCE, method="wilson")
+def _ranks(samples: FloatArray) -> FloatArray:
+    """Return the ranks along the last axis, from 1; equal numbers share the mean of theirs."""
+    order = np.argsort(samples, axis=-1)
+    ascending = np.take_along_axis(samples, order, axis=-1)
+    places = np.broadcast_to(np.arange(samples.shape[-1]), samples.shape)
+    edge = np.ones((*samples.shape[:-1], 1), dtype=bool)
+    changes = ascending[..., 1:] != ascending[..., :-1]
+    begins, ends = (np.concatenate(parts, axis=-1) for parts in ((edge, changes), (changes, edge)))
+    first = np.maximum.accumulate(np.where(begins, places, 0), axis=-1)
+    last = np.where(ends, places, samples.shape[-1])[..., ::-1]
+    last = np.minimum.accumulate(last, axis=-1)[..., ::-1]
+    ranks = np.empty(samples.shape)
+    np.put_along_axis(ranks, order, (first + last) / 2 + 1, axis=-1)
+    return ranks
+
+
+def _wilson(hits: int, of: int) -> tuple[float, float]:
+    """Return the limits of the Wilson interval of a share (Newcombe 1998, method 3)."""
+    share_of_hits, z = hits / of, _NORMAL_QUANTILE
+    denominator = 2 * (of + z**2)
+    center = (2 * of * share_of_hits + z**2) / denominator
+    delta = z / denominator * math.sqrt(4 * of * share_of_hits * (1 - share_of_hits) + z**2)
+    return (
+        center - delta if hits > 0 else 0.0,
+        center + delta if hits < of else 1.0,
+    )

@@ -238,4 +238,4 @@ def _count_trials(
 
 @lru_cache(maxsize=1)
 def _versions() -> dict[str, str]:
-    return {**versions(), "scipy": version("scipy"), "matplotlib": version("matplotlib")}
+    return {**versions(), "matplotlib": version("matplotlib")}

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hexapods.domain.records import Record
 from hexapods.domain.types import FloatArray
+from hexapods.experiments.statistics import iqm, percentile_limits, resampled_iqms
 
 RESOLUTION_M = 1e-6
 """Differences up to this are none [m]: the same walk adds up to sums that differ by rounding."""
@@ -60,12 +61,6 @@ def ranking(
     Raises:
         ValueError: if the entries were judged on different numbers of draws.
     """
-    from hexapods.experiments.statistics import (  # noqa: PLC0415  # SciPy takes a second
-        iqm,
-        percentile_limits,
-        resampled_iqms,
-    )
-
     if len({len(distances) for distances in distances_m.values()}) > 1:
         raise ValueError("all entries of a ranking must be judged on the same draws")
     if not distances_m:
@@ -107,8 +102,6 @@ def _can_be_told_apart(iqms_m: FloatArray, resampled_m: FloatArray) -> NDArray[n
         iqms_m: of the entries, descending, (k,) [m].
         resampled_m: of the entries, (k, resamples) [m].
     """
-    from hexapods.experiments.statistics import percentile_limits  # noqa: PLC0415  # as above
-
     is_apart = np.zeros((len(iqms_m), len(iqms_m)), dtype=bool)
     for place in range(len(iqms_m) - 1):
         behind = slice(place + 1, None)

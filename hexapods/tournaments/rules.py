@@ -17,10 +17,10 @@ from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot, Robot
 from hexapods.domain.settings import Setting
 from hexapods.domain.world import UNDISTURBED, lasting_world
+from hexapods.experiments.statistics import MIN_RESAMPLED
 from hexapods.runs.config import RACE_STEPS, Seed, WalkingProblem
 
-MIN_DRAWS, MAX_DRAWS = 5, 100
-"""The least is `experiments.statistics.MIN_RESAMPLED`, whose module imports SciPy for a second."""
+MIN_DRAWS, MAX_DRAWS = MIN_RESAMPLED, 100
 MAX_WORLDS = MAX_ROBOTS = 20
 MAX_ENTRIES = 300
 """Entries of a tournament, with the references: each is compared with each other."""

@@ -8,12 +8,14 @@ from scipy import stats
 
 from hexapods.domain.types import FloatArray
 from hexapods.experiments.statistics import (
+    RESAMPLES,
     Interval,
     bootstrap_exceeds,
     improvement,
     iqm,
     iqm_interval,
     paired_interval,
+    pooled_iqm,
     quantile_of,
     share,
     share_ahead,
@@ -23,6 +25,36 @@ from hexapods.experiments.statistics import (
 
 def test_the_interquartile_mean_drops_a_quarter_at_each_end() -> None:
     assert iqm(np.array([100.0, 1, 2, 3, 4, 5, 6, -100])) == pytest.approx(3.5)
+
+
+def test_the_interquartile_mean_is_scipys_to_the_last_bit() -> None:
+    samples = np.random.default_rng(4).normal(size=(5, 7, 43))
+    for axis in range(3):
+        np.testing.assert_array_equal(iqm(samples, axis), stats.trim_mean(samples, 0.25, axis))
+
+
+@pytest.mark.parametrize("sizes", [(3,), (30,), (8, 30, 5), (3000,)])
+def test_the_bootstrap_interval_is_scipys_to_the_last_bit(sizes: tuple[int, ...]) -> None:
+    rng = np.random.default_rng(5)
+    strata = tuple(tuple(rng.normal(size=size).tolist()) for size in sizes)
+    expected = stats.bootstrap(
+        [np.array(points) for points in strata],
+        pooled_iqm,
+        n_resamples=RESAMPLES,
+        batch=max(1, 4_000_000 // sum(sizes)),
+        method="percentile",
+        vectorized=True,
+        rng=np.random.default_rng(7),
+    ).confidence_interval
+    interval = iqm_interval(strata, 7)
+    assert (interval.low, interval.high) == (expected.low, expected.high)
+
+
+def test_the_wilson_intervals_are_scipys_to_the_last_bit() -> None:
+    for of in range(3, 40):
+        for hits in range(of + 1):
+            expected = stats.binomtest(hits, of).proportion_ci(method="wilson")
+            assert share(hits, of)[1:] == (expected.low, expected.high)
 
 
 def test_the_interquartile_mean_of_three_numbers_is_their_mean() -> None:
@@ -114,7 +146,7 @@ def test_the_probability_of_improvement_is_over_all_pairs_of_seeds() -> None:
     pairs = [(x > y) + 0.5 * (x == y) for x, y in product(a, b)]
     found = improvement((a,), (b,), 0)
     assert found.value == pytest.approx(np.mean(pairs))
-    assert found.value == pytest.approx(stats.mannwhitneyu(a, b).statistic / (12 * 15))
+    assert found.value == stats.mannwhitneyu(a, b).statistic / (12 * 15)
     assert found.low is not None
     assert found.high is not None
     assert found.low < found.value < found.high
@@ -143,3 +175,7 @@ def test_the_quantile_of_a_published_value() -> None:
     assert quantile_of(0.0, points) == 0
     assert quantile_of(0.2, points) == 0.5
     assert quantile_of(0.5, points) == 1
+    for published in points:
+        assert quantile_of(published, points) == (
+            stats.percentileofscore(points, published, kind="mean") / 100
+        )

@@ -252,7 +252,7 @@ def test_the_summary_has_config_cost_versions_and_machine() -> None:
     summary = summarise(tried, {}, cost=cost)
     assert summary["config"]["seed"] == 9
     assert summary["cost"] == cost
-    assert {"racing-hexapods", "python", "numpy", "scipy", "mujoco"} <= summary["versions"].keys()
+    assert {"racing-hexapods", "python", "numpy", "mujoco"} <= summary["versions"].keys()
     assert summary["machine"].keys() == {"platform", "cores"}
 
 

@@ -18,6 +18,7 @@ from app.features.classroom.markdown import Markdown, Title, check_line, check_m
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import Record
 from hexapods.domain.sums import ordered_sum
+from hexapods.experiments.statistics import iqm, quantile_of
 
 MAX_CHOICES = 20
 MAX_POINTS = 200
@@ -208,9 +209,6 @@ class NumberType(QuestionType):
         distances = [outcome.distance_m for outcome in outcomes if outcome.distance_m is not None]
         if metres is None or not distances:
             return super().scorer(ask, right, outcomes)
-        # SciPy, which it imports, takes a second, and most servers score no answers.
-        from hexapods.experiments.statistics import iqm, quantile_of  # noqa: PLC0415
-
         mean_m = float(iqm(np.array(distances)))
         return lambda value: Score(
             quantile=quantile_of(value * metres, distances), error=abs(value - mean_m / metres)
@@ -324,8 +322,6 @@ def _is_number(value: Any) -> bool:
 
 def _mean_curve(curves: Sequence[Curve]) -> Mapping[float, float]:
     """Return the interquartile mean of several curves, at the steps that all have."""
-    from hexapods.experiments.statistics import iqm  # noqa: PLC0415 - as above
-
     by_step = [dict(curve) for curve in curves]
     steps = set.intersection(*(set(curve) for curve in by_step)) if by_step else set()
     return {

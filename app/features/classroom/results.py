@@ -5,7 +5,7 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from app.features.classroom.questions import Ask, Score, WalkOutcome, scorer
 from app.features.classroom.room import Room
@@ -15,10 +15,8 @@ from app.storage.errors import NotFound
 from app.storage.json_text import is_finite
 from app.storage.run import Kind, Run, State
 from hexapods.domain.text import text_cell
+from hexapods.experiments.statistics import Interval, iqm_interval
 from hexapods.runs.results import RaceResult, TrainingResult
-
-if TYPE_CHECKING:
-    from hexapods.experiments.statistics import Interval
 
 _SEED_OF_INTERVALS = 0
 MEDIA_TYPE = "text/csv"
@@ -96,7 +94,7 @@ class CardResults:
     finished: int
     entries: list[Entry]
     distances_m: list[float]
-    interval: "Interval | None"
+    interval: Interval | None
     answer: float | str | None
 
 
@@ -203,10 +201,7 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
     )
 
 
-def _interval(distances_m: Sequence[float]) -> "Interval":
-    # SciPy, which it imports, takes a second, and most servers have no rooms.
-    from hexapods.experiments.statistics import iqm_interval  # noqa: PLC0415
-
+def _interval(distances_m: Sequence[float]) -> Interval:
     return iqm_interval((tuple(distances_m),), _SEED_OF_INTERVALS)
 
 

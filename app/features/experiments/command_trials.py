@@ -76,7 +76,7 @@ def _run(
 
 
 def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
-    # Imported here, as SciPy and Matplotlib take a second to import.
+    # Imported here, as Matplotlib takes a second to import.
     from hexapods.experiments.report.files import report_files, write_files  # noqa: PLC0415
     from hexapods.experiments.summary import summarise  # noqa: PLC0415
 

@@ -159,7 +159,7 @@ class _SentProgress(Progress):
     def _compute_summary(
         self, results: Mapping[str, TrialResult], set_aside: Mapping[str, str], cost: Any
     ) -> None:
-        from hexapods.experiments.summary import summarise  # noqa: PLC0415 - it brings SciPy
+        from hexapods.experiments.summary import summarise  # noqa: PLC0415 - slow to import
 
         started_s = time.monotonic()
         self._summary = summarise(self.plan.config, results, set_aside, cost)

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 def _verify(data: bytes, options: argparse.Namespace) -> int:
     if options.sample is not None:
         raise InvalidInput("--sample is for score files of benchmarks; leave it out")
-    # Imported here, as SciPy takes a second to import.
     from hexapods.tournaments.tournament_file import read_file  # noqa: PLC0415
     from hexapods.tournaments.verification import verification, version_note  # noqa: PLC0415
 

@@ -241,9 +241,6 @@ def _summarize(
 
 
 def _interquartile_mean(values: Sequence[float]) -> float:
-    """Return the interquartile mean, as `scipy.stats.trim_mean(values, 0.25)`.
-
-    The server does not import SciPy.
-    """
+    """Return the interquartile mean, summed in ascending order."""
     cut, ordered = int(0.25 * len(values)), np.sort(values)
     return float(ordered[cut : len(values) - cut].mean())
