@@ -8,6 +8,8 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
+from sqlalchemy import MetaData, inspect
+
 from app.cli.machine_checks import CheckFailed
 from app.events.damage import damaged_rows, damaged_runs
 from app.feature import Feature, blaming
@@ -86,10 +88,15 @@ def _data(settings: Settings) -> str:
                 "all writes by a lock: take their permissions with `chmod go-rwx`"
             )
     features = load(settings.without).classes
-    tables = [feature.tables for feature in features if feature.tables is not None]
-    with open_read_only(settings, *tables) as store:
-        # What the rows stand for is known to those who read them.
+    with open_read_only(settings) as store:
+        existing_tables = store.database.read(lambda database: inspect(database).get_table_names())
         for feature in features:
+            tables = MetaData() if feature.tables is None else feature.tables
+            # Those of a feature are made when a server that has it starts.
+            if tables.tables and tables.tables.keys().isdisjoint(existing_tables):
+                continue
+            store.database.tables += tables.sorted_tables
+            # What the rows stand for is known to those who read them.
             with blaming(feature, "`read_rows`"):
                 feature.read_rows(store)
         damage = [*_damaged_runs(store), *_damaged_robots(store, folder)]

@@ -1,12 +1,12 @@
 """Open the store of a data folder read-only, also while its server runs."""
 
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-from sqlalchemy import Connection, Engine, MetaData, create_engine, event, select
+from sqlalchemy import Connection, Engine, create_engine, event, select
 from sqlalchemy.pool import NullPool, StaticPool
 
 from app.settings import ROBOTS_FOLDER, Settings
@@ -24,12 +24,11 @@ from app.storage.run_kind import kinds_without
 
 
 @contextmanager
-def open_read_only(settings: Settings, *tables: MetaData) -> Iterator[RunStore]:
+def open_read_only(settings: Settings) -> Iterator[RunStore]:
     """Open the store read-only; an empty one if no server has ever used this data folder.
 
     Args:
         settings: of the server.
-        tables: those of features that are to be read, too.
 
     Raises:
         InvalidInput: if it has the schema of another version.
@@ -37,11 +36,10 @@ def open_read_only(settings: Settings, *tables: MetaData) -> Iterator[RunStore]:
         StorageFailed: if it is damaged, or cannot be read.
     """
     with ExitStack() as stack:
-        database = stack.enter_context(closing(Database(_engine(settings, tables))))
+        database = stack.enter_context(closing(Database(_engine(settings))))
         database_id = database.read(_id)
         if database_id is None:
-            database = stack.enter_context(closing(Database(_empty_engine(tables))))
-        database.tables += [table for metadata in tables for table in metadata.sorted_tables]
+            database = stack.enter_context(closing(Database(_empty_engine())))
         disk_space, artifacts = DiskSpace(settings.data), settings.data / ARTIFACTS_FOLDER
         name = id_of_files(database_id, artifacts) or "none"
         files = ArtifactFiles(artifacts / name, disk_space)
@@ -50,21 +48,20 @@ def open_read_only(settings: Settings, *tables: MetaData) -> Iterator[RunStore]:
         yield RunStore(database, files, robots, kinds_without(settings.without))
 
 
-def _engine(settings: Settings, tables: Sequence[MetaData]) -> Engine:
+def _engine(settings: Settings) -> Engine:
     if settings.database_url is not None:
         engine = postgresql_engine(settings.database_url)
         event.listen(engine, "connect", _set_read_only)
         return engine
     path = settings.data / DATABASE_FILE
     check_file(path, settings.data / ARTIFACTS_FOLDER)
-    return _sqlite_engine(path) if path.is_file() else _empty_engine(tables)
+    return _sqlite_engine(path) if path.is_file() else _empty_engine()
 
 
-def _empty_engine(tables: Sequence[MetaData]) -> Engine:
+def _empty_engine() -> Engine:
     """Create an engine for a database in memory, with tables but no rows."""
     engine = create_engine("sqlite://", poolclass=StaticPool)
-    for metadata in (METADATA, *tables):
-        metadata.create_all(engine)
+    METADATA.create_all(engine)
     return engine
 
 
