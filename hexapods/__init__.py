@@ -16,7 +16,7 @@ Modules beside the packages, each of which has a map in its docstring:
   what a person may write for an agent, a robot or a world. `interruption`: Ctrl-C.
 - `assembly`: from a config to a simulator and agents.
 - `assets`: where models, page and documents are; `files`: atomic writes and locks; `machine`: cores
-  and memory.
+  and memory; `extras`: optional packages.
 - `processes`: start, set-up, watch and end of processes; `clean_start`: they do not import the
   program that starts them; `fork_server_end`: no folder is left; `worker_pool`: their executor.
 """

@@ -11,9 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, SupportsInt
 
-import gymnasium
 import numpy as np
-from gymnasium import spaces
 from numpy.typing import NDArray
 
 from hexapods.arguments import (
@@ -34,8 +32,13 @@ from hexapods.domain.simulator import RewardKind, Simulator
 from hexapods.domain.types import Action, IntArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.exports.video import robot_camera
+from hexapods.extras import needs
 from hexapods.runs.config import RACE_STEPS, SimulatorName, TrainingConfig
 from hexapods.runs.walker import Sensors
+
+with needs("gym", "the Gymnasium environment"):
+    import gymnasium
+    from gymnasium import spaces
 
 if TYPE_CHECKING:
     from hexapods.exports.video_pictures import RobotCamera

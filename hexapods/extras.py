@@ -1,49 +1,46 @@
-"""Optional packages: imported when they are first needed, with an error that names the extra."""
+"""Extras: optional packages, with an error that says the line which installs them.
 
-import importlib
+A module of an extra is imported under `needs`, and nowhere else, which a test checks:
+
+    with needs("parquet", "a Parquet file"):
+        import pyarrow as arrow
+"""
+
 import importlib.util
 import os
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 from hexapods.domain.errors import InvalidInput
 
-_MODULES: Mapping[str, tuple[str, ...]] = {
-    "video": ("imageio_ffmpeg", "OpenGL"),
-    "parquet": ("pyarrow",),
+MODULES: Mapping[str, tuple[str, ...]] = {
+    "cluster": ("distributed",),
+    "gym": ("gymnasium",),
     "mcap": ("foxglove",),
+    "parquet": ("pyarrow",),
+    "postgres": ("psycopg",),
+    "video": ("imageio_ffmpeg", "OpenGL"),
 }
-"""Modules that exports need, by the extra that has them."""
+"""Modules that the product imports, by the extra of pyproject.toml that has them."""
 
 
 class MissingExtra(InvalidInput):
     """A package of an extra, or of the system, is missing; the message says how to install it."""
 
 
-def no_opengl(error: Exception) -> MissingExtra:
-    """Return the error that OpenGL cannot draw off screen here."""
-    backend = os.environ.get("MUJOCO_GL", "")
-    by = f" by {backend}" if backend else ""
-    return MissingExtra(
-        f"a video needs OpenGL, which does not work here{by} ({error}); "
-        "on Debian `apt-get install libegl1 libgl1-mesa-dri`, or `apt-get install libosmesa6` "
-        "and set MUJOCO_GL=osmesa"
-    )
-
-
-def import_extra(module: str, extra: str, purpose: str) -> Any:
-    """Import a module of an extra of this package.
+@contextmanager
+def needs(extra: str, purpose: str) -> Iterator[None]:
+    """Turn an `ImportError` within the context into a `MissingExtra`.
 
     Args:
-        module: its full name.
-        extra: a name in `[project.optional-dependencies]` of pyproject.toml.
+        extra: name of the extra in `[project.optional-dependencies]` of pyproject.toml.
         purpose: what needs it, as the subject of a sentence in the singular.
 
     Raises:
-        MissingExtra: if it, or a package that it needs, is not installed.
+        MissingExtra: if a package of the extra, or one that it needs, is not installed.
     """
     try:
-        return importlib.import_module(module)
+        yield
     except ImportError as error:
         raise MissingExtra(
             f"{purpose} needs a package that is not installed here ({error}); "
@@ -61,4 +58,15 @@ def is_installed(extra: str) -> bool:
 
     Nothing is imported; whether OpenGL works only drawing can tell.
     """
-    return all(importlib.util.find_spec(module) is not None for module in _MODULES[extra])
+    return all(importlib.util.find_spec(module) is not None for module in MODULES[extra])
+
+
+def no_opengl(error: Exception) -> MissingExtra:
+    """Return the error that OpenGL cannot draw off screen here."""
+    backend = os.environ.get("MUJOCO_GL", "")
+    by = f" by {backend}" if backend else ""
+    return MissingExtra(
+        f"a video needs OpenGL, which does not work here{by} ({error}); "
+        "on Debian `apt-get install libegl1 libgl1-mesa-dri`, or `apt-get install libosmesa6` "
+        "and set MUJOCO_GL=osmesa"
+    )

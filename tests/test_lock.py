@@ -33,12 +33,24 @@ def test_what_runs_is_what_is_tested() -> None:
     assert pinned_versions(RUN_LOCK).items() <= pinned_versions(DEV_LOCK).items()
 
 
+def extras_of(lock: str) -> list[str]:
+    """Return the extras that a lock has, by the Makefile's name of it."""
+    texts = re.findall(
+        rf"^({lock}_EXTRAS|RUN_EXTRAS) := (.*)$", (CHECKOUT / "Makefile").read_text(), re.MULTILINE
+    )
+    return [name for _, text in texts for name in text.split() if not name.startswith("$")]
+
+
 @pytest.mark.parametrize(
-    ("lock", "groups"), [(RUN_LOCK, ["build"]), (DEV_LOCK, ["build", "dev"])], ids=["run", "dev"]
+    ("lock", "name", "groups"),
+    [(RUN_LOCK, "RUN", ["build"]), (DEV_LOCK, "DEV", ["build", "dev"])],
+    ids=["run", "dev"],
 )
-def test_the_lock_is_current(lock: Path, groups: list[str]) -> None:
+def test_the_lock_is_current(lock: Path, name: str, groups: list[str]) -> None:
     project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())
     wanted = [*project["project"]["dependencies"], *project["build-system"]["requires"]]
+    for extra in extras_of(name):
+        wanted += project["project"]["optional-dependencies"][extra]
     for group in groups:
         wanted += [item for item in project["dependency-groups"][group] if isinstance(item, str)]
 
@@ -47,6 +59,11 @@ def test_the_lock_is_current(lock: Path, groups: list[str]) -> None:
         assert requirement.specifier.contains(pinned[requirement.name]), (
             f"run `make lock`: {wanted}"
         )
+
+
+def test_the_checks_have_every_extra_but_that_of_the_deep_network() -> None:
+    project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
+    assert {*extras_of("DEV")} == project["optional-dependencies"].keys() - {"dqn"}
 
 
 def test_the_example_of_a_deep_network_changes_nothing_that_is_pinned_already() -> None:

@@ -13,7 +13,7 @@ from importlib.metadata import Distribution, PackageNotFoundError, distribution,
 from pathlib import Path
 
 from hexapods import __version__
-from hexapods.exports.registry import missing_extras
+from hexapods.extras import MODULES, install_command, is_installed
 
 _PYTHON = (3, 11)
 _PHYSICS_TIMEOUT_S = 60.0
@@ -52,8 +52,10 @@ def _packages() -> str:
             )
     versions = ", ".join(f"{name} {pinned}" for name, pinned in pins)
     installation = f"Python {python_version}, Racing Hexapods {__version__}, {versions}"
-    lacking = [f"{title}: `{install}`" for title, install in missing_extras().items()]
-    return "; ".join([installation, *lacking])
+    missing = [extra for extra in MODULES if not is_installed(extra)]
+    if not missing:
+        return installation
+    return f"{installation}; without {', '.join(missing)}: {install_command(','.join(missing))}"
 
 
 def changed_file(package: Distribution) -> str | None:

@@ -25,6 +25,7 @@ from hexapods.experiments.worker import (
     run_batch,
     versions,
 )
+from hexapods.extras import needs
 from hexapods.machine import cores
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ _HOW_TO_START = (
     "start one with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, or leave --scheduler "
     "out to use the cores of this machine"
 )
+_PURPOSE = "an experiment on a Dask cluster"
 _LOST = "the connection to the cluster's scheduler was lost; what was done is kept"
 
 
@@ -98,6 +100,7 @@ def connect(spec: ClusterSpec) -> Iterator[Workers]:
 
     Raises:
         InvalidInput: if the scheduler does not answer, or a worker would compute other results.
+        MissingExtra: if there is a scheduler, and Dask is not installed.
         ClusterLost: if no worker can be started.
     """
     if spec.scheduler is None:
@@ -126,7 +129,8 @@ class _ClusterWorkers:
         return self._client.submit(run_batch, trials, self._expected, pure=False)
 
     def result(self, task: Any) -> list[Outcome]:
-        from distributed import CancelledError, KilledWorker  # noqa: PLC0415
+        with needs("cluster", _PURPOSE):
+            from distributed import CancelledError, KilledWorker  # noqa: PLC0415
 
         try:
             done: list[Outcome] = task.result()
@@ -139,8 +143,9 @@ class _ClusterWorkers:
 
 @contextmanager
 def _existing_cluster(spec: ClusterSpec) -> "Iterator[Client]":
-    from distributed import Client  # noqa: PLC0415 - importing Dask takes half a second
-    from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
+    with needs("cluster", _PURPOSE):
+        from distributed import Client  # noqa: PLC0415 - importing Dask takes half a second
+        from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
 
     address = str(spec.scheduler)
     # Silences Dask's log of every worker that dies; the engine reports these itself.
@@ -176,7 +181,8 @@ def _probe(address: str, security: "Security") -> None:
     Dask's own client retries a refused connection, and waits without a timeout for a server that
     accepts the connection but does not answer.
     """
-    from distributed.comm.core import connect as shake_hands  # noqa: PLC0415
+    with needs("cluster", _PURPOSE):
+        from distributed.comm.core import connect as shake_hands  # noqa: PLC0415
 
     host, _, port = address.partition("://")[2].rpartition(":")
     with socket.create_connection((host.strip("[]"), int(port)), ANSWER_S):
@@ -193,7 +199,8 @@ def _probe(address: str, security: "Security") -> None:
 
 
 def _security(spec: ClusterSpec) -> "Security":
-    from distributed.security import Security  # noqa: PLC0415
+    with needs("cluster", _PURPOSE):
+        from distributed.security import Security  # noqa: PLC0415
 
     if spec.tls_ca is None:
         return Security()

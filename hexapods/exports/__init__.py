@@ -14,5 +14,4 @@
   servos. It needs a map of them, which no request has, so it is no format of the registry. To add a
   map: a file in `servo_maps`, named in `BUILT_IN_MAPS` of `servo_map`.
 - `robot_model`: a robot as a model for MuJoCo.
-- `extras`: the optional packages that some files need.
 """

@@ -8,9 +8,9 @@ from typing import Any, Literal, NamedTuple
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import DeclaredSetting, declared_fields
-from hexapods.exports.extras import install_command, is_installed
 from hexapods.exports.options import ExportOptions
 from hexapods.exports.recorded_walks import RecordedWalks
+from hexapods.extras import install_command, is_installed
 from hexapods.runs.clocks import Clock
 
 Load = Literal["stream", "encode", "render"]

@@ -19,12 +19,11 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import FloatArray
 from hexapods.exports.export_format import HERE, Execution
-from hexapods.exports.extras import import_extra
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
+from hexapods.extras import needs
 from hexapods.physics.mjcf import compile_visual_model
 from hexapods.runs.clocks import Clock
 
-MCAP_EXTRA = "mcap"
 LANE_WIDTH_M = 1.0
 """Between the origins of the lanes."""
 _CHUNK_BYTES = 1 << 16
@@ -53,9 +52,10 @@ def mcap_log(walks: RecordedWalks, clock: Clock, execution: Execution = HERE) ->
         InvalidInput: at the call, if it would have more frames.
         MissingExtra: at the call, if the Foxglove SDK is not installed.
     """
-    foxglove = import_extra("foxglove", MCAP_EXTRA, "an MCAP file")
-    import_extra("foxglove.messages", MCAP_EXTRA, "an MCAP file")
-    import_extra("foxglove.channels", MCAP_EXTRA, "an MCAP file")
+    with needs("mcap", "an MCAP file"):
+        import foxglove  # noqa: PLC0415
+        import foxglove.channels  # noqa: PLC0415
+        import foxglove.messages  # noqa: PLC0415
     frames = sum(lane.frames for lane in walks.lanes)  # whole numbers
     if execution.max_frames is not None and frames > execution.max_frames:
         raise InvalidInput(

@@ -1,8 +1,8 @@
 """The export formats, each declared once.
 
-From an entry follow its route, its command under `hexapods runs`, its place in the page's menu, the
-extra that `hexapods doctor` looks for, and its slots and limits on a server. The functions import
-what they need when they are called, since commands that export nothing should start fast.
+From an entry follow its route, its command under `hexapods runs`, its place in the page's menu, its
+slots and limits on a server. The functions import what they need when they are called, since
+commands that export nothing should start fast.
 """
 
 from collections.abc import Iterable
@@ -101,13 +101,3 @@ EXPORTS: dict[str, ExportFormat] = {
     ),
 }
 """By name, which is part of the route's path, and the command."""
-
-
-def missing_extras() -> dict[str, str]:
-    """Return the file types whose extra is not installed: their titles and how to install it."""
-    return {
-        file.title: file.install
-        for export in EXPORTS.values()
-        for file in export.files
-        if file.install is not None
-    }

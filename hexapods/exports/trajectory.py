@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
-from hexapods.exports.extras import import_extra
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
+from hexapods.extras import needs
 from hexapods.files import DrainedBuffer
 
-PARQUET_EXTRA = "parquet"
 _STEPS_PER_BLOCK = 8
 """About 130 frames, 90 kB of text, which stay in memory while a client reads them."""
 _ROWS_PER_GROUP = 16_384
@@ -85,8 +84,9 @@ def trajectory_parquet(look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
     Raises:
         MissingExtra: at the call, if PyArrow is not installed.
     """
-    arrow = import_extra("pyarrow", PARQUET_EXTRA, "a Parquet file")
-    parquet = import_extra("pyarrow.parquet", PARQUET_EXTRA, "a Parquet file")
+    with needs("parquet", "a Parquet file"):
+        import pyarrow as arrow  # noqa: PLC0415
+        from pyarrow import parquet  # noqa: PLC0415
     return _parquet(arrow, parquet, look, lanes)
 
 

@@ -20,9 +20,9 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.types import FloatArray
 from hexapods.exports.export_format import HERE, Execution
-from hexapods.exports.extras import import_extra, no_opengl
 from hexapods.exports.options import VideoOptions
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
+from hexapods.extras import needs, no_opengl
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.recording import pose_at
@@ -30,7 +30,6 @@ from hexapods.runs.recording import pose_at
 if TYPE_CHECKING:
     from hexapods.exports.video_pictures import RobotCamera
 
-VIDEO_EXTRA = "video"
 MAX_FRAMES = 9000
 """Pictures of one video; each takes about 0.1 s in software."""
 
@@ -90,7 +89,8 @@ def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
         OSError: if it cannot be encoded or written.
     """
     pictures = _drawing().pictures
-    ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
+    with needs("video", "a video"):
+        import imageio_ffmpeg as ffmpeg  # noqa: PLC0415
     size, coding = (options.width, options.height), _coding(options.fps, file.suffix)
     writer = ffmpeg.write_frames(str(file), size, **coding)
     writer.send(None)

@@ -12,9 +12,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from hexapods.agents.appearance import colors_of, title_of
 from hexapods.domain.types import FloatArray
-from hexapods.exports.extras import import_extra, no_opengl
 from hexapods.exports.options import VideoOptions
-from hexapods.exports.video import VIDEO_EXTRA, ShownPoses
+from hexapods.exports.video import ShownPoses
+from hexapods.extras import needs, no_opengl
 from hexapods.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
 from hexapods.runs.clocks import FINISH_LINE_M
 from hexapods.runs.config import WalkingProblem
@@ -79,7 +79,8 @@ class RobotCamera:
 def _new_gl_context(width: int, height: int) -> Any:
     """Return a new OpenGL context, the current one of this thread."""
     name = "osmesa" if os.environ.get("MUJOCO_GL", "").lower() == "osmesa" else "egl"
-    import_extra("OpenGL", VIDEO_EXTRA, "a video")
+    with needs("video", "a video"):
+        import OpenGL  # noqa: F401, PLC0415  # which MuJoCo imports next
     try:
         backend = importlib.import_module(f"mujoco.{name}")
         context = backend.GLContext(width, height)

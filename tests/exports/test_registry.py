@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from hexapods.exports import extras
+from hexapods import extras
 from hexapods.exports.registry import EXPORTS
 
 ROOT = Path(__file__).parents[2]

@@ -3,9 +3,6 @@
 import csv
 import dataclasses
 import io
-import sys
-from importlib.machinery import ModuleSpec
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -14,7 +11,6 @@ import pytest
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
-from hexapods.exports import extras, registry
 from hexapods.exports.recorded_walks import RecordedWalks, checked_lane
 from hexapods.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
 from tests.exports.conftest import recorded_walks
@@ -95,21 +91,3 @@ def test_a_practice_has_its_recorded_steps(parts: StageParts) -> None:
     assert {int(row[1]) for row in rows} == set(range(31))
     with pytest.raises(InvalidInput, match="lane must be 0, not 1"):
         checked_lane(walks, 1)
-
-
-def test_a_missing_package_names_its_extra() -> None:
-    with pytest.raises(extras.MissingExtra, match=r"pip install 'racing-hexapods\[parquet\]'"):
-        extras.import_extra("no_such_module", "parquet", "a Parquet file")
-
-
-def test_extras_that_are_missing_are_named_with_the_command_that_installs_them(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    for name in ("imageio_ffmpeg", "OpenGL", "pyarrow", "foxglove"):
-        installed = ModuleType(name)
-        installed.__spec__ = ModuleSpec(name, None)
-        monkeypatch.setitem(sys.modules, name, installed)
-    assert registry.missing_extras() == {}
-    monkeypatch.setitem(sys.modules, "OpenGL", None)
-    install = "pip install 'racing-hexapods[video]'"
-    assert registry.missing_extras() == {"Video (MP4)": install, "Video (GIF)": install}

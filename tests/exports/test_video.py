@@ -12,10 +12,10 @@ from PIL import Image, ImageSequence
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.exports import video
-from hexapods.exports.extras import MissingExtra
 from hexapods.exports.options import VideoOptions
 from hexapods.exports.recorded_walks import RecordedWalks
 from hexapods.exports.video import render_video, shown_poses
+from hexapods.extras import MissingExtra
 from tests.exports.conftest import recorded_walks
 from tests.stage.stage_parts import StageParts
 

@@ -21,6 +21,7 @@ from app.storage.database.fifo_semaphore import FifoSemaphore
 from app.storage.database.schema import ABOUT, METADATA
 from app.storage.errors import OwnershipLost, StorageFailed, StorageFull
 from hexapods.domain.errors import HexapodError
+from hexapods.extras import needs
 
 BUSY_S = 10.0
 """Time to wait for a lock that another process holds on the database."""
@@ -249,7 +250,13 @@ def sqlite_engine(path: Path) -> Engine:
 
 
 def postgresql_engine(url: str) -> Engine:
-    """Create an engine for a PostgreSQL server; it connects on first use."""
+    """Create an engine for a PostgreSQL server; it connects on first use.
+
+    Raises:
+        MissingExtra: if its driver is not installed.
+    """
+    with needs("postgres", "a PostgreSQL database"):
+        import psycopg  # noqa: F401, PLC0415  # as SQLAlchemy does
     wait_ms = int(BUSY_S * 1000)
     return create_engine(
         make_url(url).set(drivername="postgresql+psycopg"),
