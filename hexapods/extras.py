@@ -15,6 +15,7 @@ from hexapods.domain.errors import InvalidInput
 
 MODULES: Mapping[str, tuple[str, ...]] = {
     "cluster": ("distributed",),
+    "experiments": ("matplotlib",),
     "gym": ("gymnasium",),
     "mcap": ("foxglove",),
     "parquet": ("pyarrow",),
@@ -42,10 +43,24 @@ def needs(extra: str, purpose: str) -> Iterator[None]:
     try:
         yield
     except ImportError as error:
-        raise MissingExtra(
-            f"{purpose} needs a package that is not installed here ({error}); "
-            f"`{install_command(extra)}` installs it"
-        ) from error
+        raise _missing(extra, purpose, error) from error
+
+
+def require(extra: str, purpose: str) -> None:
+    """Check that an extra is installed, before work whose end needs it.
+
+    Raises:
+        MissingExtra: if it is not; arguments as of `needs`.
+    """
+    if not is_installed(extra):
+        raise _missing(extra, purpose, ", ".join(MODULES[extra]))
+
+
+def _missing(extra: str, purpose: str, reason: object) -> MissingExtra:
+    return MissingExtra(
+        f"{purpose} needs a package that is not installed here ({reason}); "
+        f"`{install_command(extra)}` installs it"
+    )
 
 
 def install_command(extra: str) -> str:

@@ -1,4 +1,4 @@
-"""The wheel, installed into an empty environment, is all that a user needs."""
+"""The wheel, installed into an empty environment without extras, serves, trains and races."""
 
 import os
 import re
@@ -17,15 +17,16 @@ pytestmark = pytest.mark.promises
 
 CHECKOUT = Path(__file__).parent.parent
 LOCK = CHECKOUT / "requirements.lock"
+MAX_PACKAGES, MAX_BYTES = 55, 250_000_000
 SHORTER = {"steps=500": "steps=20", 'world="ice"': 'world="ice", steps=5'}
 """What the gate changes in the README's example, which walks for ten seconds as it stands."""
 
 
-def start(*command: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
+def start(*command: str | Path, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
     """Run a command without what this process was started with, in a folder."""
     kept = {k: v for k, v in os.environ.items() if not k.startswith(("HEXAPODS_", "PYTHON"))}
     return subprocess.run(
-        command, cwd=folder, env=kept, capture_output=True, text=True, check=False
+        command, cwd=folder, env=kept | variables, capture_output=True, text=True, check=False
     )
 
 
@@ -47,18 +48,47 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def installed(wheel: Path) -> Path:
-    """The scripts of an environment that has the wheel and what is pinned, and nothing else."""
+    """The scripts of an environment that has the wheel and its dependencies, but no extra."""
     environment = wheel.parent / "environment"
     run(sys.executable, "-m", "venv", "--without-pip", environment, folder=wheel.parent)
     python = environment / "bin" / "python"
-    pinned = ("--require-hashes", "--requirement", LOCK)
-    for what in (pinned, ("--no-deps", wheel)):
-        # As the Makefile does: pip where uv fails, which reads no configuration of pip's.
-        uv = (sys.executable, "-m", "uv", "pip", "install", "--python", python, *what)
-        if start(*uv, folder=wheel.parent).returncode != 0:
-            pip = (sys.executable, "-m", "pip", "--python", python, "install", *what)
-            run(*pip, folder=wheel.parent)
+    versions = wheel.parent / "versions.txt"
+    pins = re.findall(r"^[a-z0-9-]+==[^ ]+", LOCK.read_text(), re.MULTILINE)
+    versions.write_text("\n".join(pins))
+    into, pinned = ("--python", python), ("--constraint", versions, wheel)
+    # As the Makefile does: pip where uv fails, which reads no configuration of pip's.
+    uv = (sys.executable, "-m", "uv", "pip", "install", *into, *pinned)
+    if start(*uv, folder=wheel.parent).returncode != 0:
+        run(sys.executable, "-m", "pip", *into, "install", *pinned, folder=wheel.parent)
     return environment / "bin"
+
+
+def test_it_is_small(installed: Path) -> None:
+    [packages] = installed.parent.glob("lib/python*/site-packages")
+    files = [path for path in packages.rglob("*") if path.suffix != ".pyc" and path.is_file()]
+    assert sum(path.stat().st_size for path in files) <= MAX_BYTES
+    assert len([*packages.glob("*.dist-info")]) <= MAX_PACKAGES
+
+
+def test_what_needs_an_extra_says_which_line_installs_it(installed: Path, tmp_path: Path) -> None:
+    hexapods = str(installed / "hexapods")
+    data = {"HEXAPODS_DATABASE_URL": "postgresql://me@127.0.0.1:1/hexapods"}
+    for extra, command, variables in (
+        ("experiments", ("experiment", "table1"), {}),
+        ("postgres", ("serve",), data),
+    ):
+        done = start(hexapods, *command, folder=tmp_path, **variables)
+        assert done.returncode == 2, (done.stdout, done.stderr)
+        [line] = done.stderr.splitlines()
+        assert line.endswith(f"`pip install 'racing-hexapods[{extra}]'` installs it")
+
+
+def test_it_trains_and_races(installed: Path, tmp_path: Path) -> None:
+    hexapods, gait = str(installed / "hexapods"), ("--gait", "left-right-origin")
+    train = ("train", *gait, "--steps", "5", "--out", "q.npz")
+    assert "in 50 steps" in run(hexapods, *train, folder=tmp_path)
+    race = ("race", *gait, "--steps", "2", "--lane", "greedy", "--lane", "wave")
+    assert "greedy" in run(hexapods, *race, folder=tmp_path).lower()
 
 
 def test_it_carries_the_page_and_the_models_and_no_tests(wheel: Path) -> None:
@@ -101,6 +131,9 @@ def test_it_serves(installed: Path, tmp_path: Path) -> None:
                     time.sleep(0.1)
                     race = client.get(f"/api/v1/races/{race['id']}").json()
                 assert race["state"] == "finished", race
+                refused = client.post("/api/v1/experiments", json={"experiment": "table1"})
+                assert refused.status_code == 422
+                assert "pip install 'racing-hexapods[experiments]'" in refused.text
         finally:
             server.terminate()
             server.communicate(timeout=60)

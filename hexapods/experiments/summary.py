@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from importlib.metadata import version
 from itertools import combinations
 from typing import Any
 
@@ -70,7 +69,7 @@ def summarise(
         "format": SUMMARY_FORMAT,
         "experiment": config.experiment,
         "config": to_json(config),
-        "versions": _versions(),
+        "versions": versions(),
         "machine": description(),
         "trials": _count_trials(plan, settings, set_aside or {}),
         "cost": None if cost is None else dict(cost),
@@ -234,8 +233,3 @@ def _count_trials(
         "failures": reasons(failed),
         "set_aside": reasons(dict(sorted(set_aside.items()))),
     }
-
-
-@lru_cache(maxsize=1)
-def _versions() -> dict[str, str]:
-    return {**versions(), "matplotlib": version("matplotlib")}

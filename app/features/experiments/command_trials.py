@@ -16,6 +16,7 @@ from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
 from hexapods.experiments.failures import failures_text
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Trial
+from hexapods.extras import require
 from hexapods.interruption import stop_signals
 from hexapods.machine import cores
 
@@ -38,6 +39,7 @@ def run_experiment(
     Raises:
         HexapodError: if the experiment cannot be run or completed; finished trials are stored.
     """
+    require("experiments", "an experiment")
     path: Path = options.out or Path(f"{config.experiment}-results")
     print_line = discard if options.json else print
     with open_results(path, config) as folder:

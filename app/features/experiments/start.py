@@ -12,6 +12,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.config import GRID, ExperimentConfig
 from hexapods.experiments.names import experiment_name
 from hexapods.experiments.plan import Plan
+from hexapods.extras import require
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
 
 MAX_SETTINGS = 2_000
@@ -33,7 +34,12 @@ class ExperimentStart:
     workers: int | None = None
 
     def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:  # noqa: ARG002
-        """See `Start`."""
+        """See `Start`.
+
+        Raises:
+            MissingExtra: if the report could not be drawn.
+        """
+        require("experiments", "an experiment")
         config, workers = self.config, self.workers
         plan = plan_of(config)
         cores = os.cpu_count() or 1

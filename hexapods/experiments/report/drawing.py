@@ -6,13 +6,15 @@ from contextlib import contextmanager
 from io import BytesIO
 from typing import Any, NamedTuple
 
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-
 from hexapods.agents.appearance import colors_of
 from hexapods.agents.registry import OURS
+from hexapods.extras import needs
+
+with needs("experiments", "the report of an experiment"):
+    from matplotlib import rc_context
+    from matplotlib.axes import Axes
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
 
 INK, MUTED, FAINT, PAPER = "#1f2329", "#646b75", "#dfe2e6", "#fffffe"
 """Colours of text, secondary text, grid lines and background.

@@ -3,11 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-
 from hexapods.agents.appearance import title_of
 from hexapods.domain.text import metres
 from hexapods.experiments.claims.cases import Case
@@ -22,6 +17,13 @@ from hexapods.experiments.report.drawing import (
     figure,
     style_axes,
 )
+from hexapods.extras import needs
+
+with needs("experiments", "the report of an experiment"):
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
 Curve = Mapping[str, Any]
 PANEL_IN = (3.0, 2.7)

@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from matplotlib.axes import Axes
-
 from hexapods.agents.appearance import title_of
 from hexapods.experiments.claims.cases import Case
 from hexapods.experiments.formatting import percent
@@ -18,6 +16,10 @@ from hexapods.experiments.report.drawing import (
     figure,
     style_axes,
 )
+from hexapods.extras import needs
+
+with needs("experiments", "the report of an experiment"):
+    from matplotlib.axes import Axes
 
 MOST = 40
 """Maximal number of rows of a figure; of more combinations the best are drawn."""

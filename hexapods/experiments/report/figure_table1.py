@@ -3,10 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-
 from hexapods.agents.appearance import title_of
 from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import Case
@@ -22,6 +18,12 @@ from hexapods.experiments.report.drawing import (
     jitter,
     style_axes,
 )
+from hexapods.extras import needs
+
+with needs("experiments", "the report of an experiment"):
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 Setting = Mapping[str, Any]
 PANEL_IN = (4.7, 4.6)

@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from matplotlib.axes import Axes
-
 from hexapods.agents.appearance import title_of
 from hexapods.domain.text import metres
 from hexapods.experiments.labels import world_name
@@ -16,6 +14,10 @@ from hexapods.experiments.report.drawing import (
     style_axes,
 )
 from hexapods.experiments.report.tables import agent_name, place_name, place_of
+from hexapods.extras import needs
+
+with needs("experiments", "the report of an experiment"):
+    from matplotlib.axes import Axes
 
 PANEL_IN = (3.4, 2.8)
 Entry = Mapping[str, Any]
