@@ -36,6 +36,7 @@ _ADVICE: Mapping[str, str] = {
     "runs": "delete these runs, or put a backup back",
     "evaluations": "delete these trainings, or put a backup back",
     "artifacts": "delete these runs, or put a backup back",
+    "baselines": "nothing needs to be done: they are measured again",
     "idempotency_keys": "nothing needs to be done: a repeated request with such a key is refused",
     "sessions": "nothing needs to be done: the next start of a server with a token deletes them, "
     "and who had one opens the address with the token again",

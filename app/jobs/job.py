@@ -337,6 +337,7 @@ class Job:
             self._recordings.add(self.run_id, record)
             if isinstance(record, Reference):
                 greedy_distance_m = record.greedy_distance_m
+                self._store.baselines.add(record.baseline, greedy_distance_m)
                 self._store.update(self.run_id, greedy_distance_m=greedy_distance_m)
                 self.publish(greedy_distance_m=greedy_distance_m)
                 self._publish_event(

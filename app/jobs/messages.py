@@ -4,7 +4,7 @@ import math
 import queue
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -28,12 +28,14 @@ class TrainingTask:
         table: table that the training continues from; None starts from zero.
         checkpoint: checkpoint of this same training, from which it resumes.
         changes: changes of rates and pace made after the checkpoint, to be replayed.
+        baselines: distances of its baselines that were measured before [m], by their ids.
     """
 
     config: TrainingConfig
     table: Checkpoint | None = None
     checkpoint: Checkpoint | None = None
     changes: tuple[Mapping[str, Any], ...] = ()
+    baselines: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

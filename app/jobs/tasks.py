@@ -21,6 +21,7 @@ from app.storage.run_kind import added_kind
 from app.storage.stored_tables import load_checkpoint, load_table
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.simulator import Motion
+from hexapods.runs.baseline import baseline_id
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.records import LaneStep
@@ -77,12 +78,14 @@ def _prefix_of(
 
 
 def _training_task(run: Run, config: TrainingConfig, store: RunStore) -> TrainingTask:
-    checkpoint = load_checkpoint(store, run, config)
+    checkpoint, steps = load_checkpoint(store, run, config), (0, *config.world.change_steps)
+    ids = [baseline_id(config, config.world.as_of(step)) for step in steps if step < config.steps]
+    baselines = store.baselines.get(ids)
     if checkpoint is None:
         table = None if run.continued_from is None else load_table(store, run.continued_from)
-        return TrainingTask(config, table, changes=run.changes)
+        return TrainingTask(config, table, changes=run.changes, baselines=baselines)
     since = run.changes[len(checkpoint.meta["changes"]) :]
-    return TrainingTask(config, checkpoint=checkpoint, changes=since)
+    return TrainingTask(config, checkpoint=checkpoint, changes=since, baselines=baselines)
 
 
 def resumed_runs(run: Run, store: RunStore) -> list[Run]:

@@ -34,6 +34,7 @@ from app.jobs.messages import (
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.disturbance_documents import as_mapping, disturbance
 from hexapods.domain.errors import HexapodError
+from hexapods.runs.baseline import BASELINES
 from hexapods.runs.racing import race
 from hexapods.runs.records import LaneStep, StepTaken
 from hexapods.runs.results import training_result
@@ -75,6 +76,7 @@ def main(pipe: Connection) -> None:
 
 def _train(task: TrainingTask, control: JobControl) -> None:
     config = task.config
+    BASELINES.add(task.baselines)
     learner = build_learner(config, task.table, threads=0)
     walker, rest_qpos = learner.walker, _pose(learner.walker)
     control.keep_pace(config.pace, config.robot.step_s)

@@ -60,10 +60,12 @@ class Reference:
     Attributes:
         greedy_distance_m: of the one-step look-ahead agent.
         best_known_m: of the best known walk in this world; None where it was not computed.
+        baseline: id of the greedy walk, by all that its distance depends on.
     """
 
     greedy_distance_m: float
     best_known_m: float | None = None
+    baseline: str = ""
 
 
 @dataclass(frozen=True)

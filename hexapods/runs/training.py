@@ -1,26 +1,22 @@
 """Training loop (paper, Algorithm 1), and evaluation of the learned policy."""
 
-from collections.abc import Callable, Hashable, Iterator
-from dataclasses import dataclass, fields, replace
-from threading import Lock
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
-from cachetools import LRUCache, cached
 
 from hexapods.domain.disturbances import Disturbance, SensorNoise
 from hexapods.domain.posture import has_fallen
 from hexapods.domain.simulator import Motion
 from hexapods.domain.types import Action
 from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.baseline import BASELINES, baseline_id
 from hexapods.runs.best_known import best_known_m
-from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+from hexapods.runs.config import RACE_STEPS, TrainingConfig
 from hexapods.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
 from hexapods.runs.seeding import EVALUATION, generator
 from hexapods.runs.transition_log import Logged, Transitions, transitions_of
 from hexapods.runs.walker import Walker
-
-_PROBLEM = [one.name for one in fields(WalkingProblem) if one.name != "world"]
-_MAX_BASELINES = 256
 
 
 @dataclass
@@ -190,29 +186,15 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
 def measure_baseline(learner: Learner, config: TrainingConfig, conditions: World) -> Reference:
     """Run the baseline (one-step look-ahead) in a world, and store its distance in the learner.
 
-    It walks once in a process: in MuJoCo that takes as long as three hundred steps of practice,
-    and a program that trains many seeds would measure the same in each.
+    It walks only if its distance is not known in this process.
     """
-    learner.greedy_distance_m = _baseline_m(learner, config, conditions)
-    learner.measured_in = conditions
-    return Reference(learner.greedy_distance_m, best_known_m(config, conditions))
-
-
-def _baseline_key(_: Learner, config: TrainingConfig, conditions: World) -> Hashable:
-    """Return all that the baseline's distance depends on."""
-    of_its_chance = config.tolerance > 0 or conditions.one_of(SensorNoise) is not None
-    problem = (getattr(config, name) for name in _PROBLEM)
-    return (*problem, conditions, of_its_chance and config.seed)
-
-
-@cached(LRUCache(_MAX_BASELINES), key=_baseline_key, lock=Lock())
-def _baseline_m(
-    learner: Learner,
-    config: TrainingConfig,  # noqa: ARG001 - of the key
-    conditions: World,
-) -> float:
-    distance_m, _ = walk(learner.baseline(conditions), record=False)
-    return distance_m
+    baseline = baseline_id(config, conditions)
+    distance_m = BASELINES.get(baseline)
+    if distance_m is None:
+        distance_m, _ = walk(learner.baseline(conditions), record=False)
+        BASELINES.add({baseline: distance_m})
+    learner.greedy_distance_m, learner.measured_in = distance_m, conditions
+    return Reference(distance_m, best_known_m(config, conditions), baseline)
 
 
 def evaluate(

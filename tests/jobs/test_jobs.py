@@ -10,6 +10,7 @@ from typing import Any
 
 import psutil
 import pytest
+from sqlalchemy import text
 
 from app.events.bus import EventBus
 from app.jobs.job import SILENT_S, Job
@@ -22,8 +23,11 @@ from app.storage.errors import Busy, Conflict, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import QUEUED, TABLE, Run
 from app.storage.stored_tables import load_table
+from hexapods.assembly import build_learner
 from hexapods.domain.errors import InvalidInput
+from hexapods.runs.baseline import baseline_id
 from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.training import walk
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.ended_runs import result_of_race, result_of_training
 from tests.storage.stores import of_type
@@ -446,3 +450,22 @@ def test_run_whose_process_dies_during_resume_is_queued_again(store: RunStore) -
         wait_until(lambda: store.get(run.id).state == "running")
     finally:
         jobs.close()
+
+
+def test_jobs_share_the_baseline_of_a_problem(jobs: Jobs, store: RunStore) -> None:
+    """The first measures it; a stored one is used by the others, whatever they practise."""
+    config = training_config(**vars(WALK), steps=20)
+    first = wait_until_ended(store, jobs.start(TrainingStart(config)))
+    greedy_m = result_of_training(first).greedy_distance_m
+    assert greedy_m is not None
+    baseline = baseline_id(config, config.world.as_of(0))
+    assert store.baselines.get([baseline]) == {baseline: greedy_m}
+
+    measured = build_learner(config)
+    assert walk(measured.baseline(config.world.as_of(0)), record=False)[0] == greedy_m
+    # That the stored one is used shows by another value of it.
+    change = text("UPDATE baselines SET distance_m = 9.5")
+    store.database.write(lambda connection: connection.execute(change))
+    other = training_config("sarsa", **vars(WALK), steps=30, seed=5)
+    run = wait_until_ended(store, jobs.start(TrainingStart(other)))
+    assert result_of_training(run).greedy_distance_m == 9.5

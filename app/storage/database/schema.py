@@ -83,6 +83,16 @@ ARTIFACTS = Table(
     Column("written_at", UtcTime, nullable=False),
 )
 
+BASELINES = Table(
+    "baselines",
+    METADATA,
+    # SHA-256 of the walking problem, world and software (`hexapods.runs.baseline`).
+    Column("id", PortableText, primary_key=True),
+    Column("distance_m", Double, nullable=False),
+    Column("created_at", UtcTime, nullable=False),
+    Index("ix_baselines_created_at", "created_at"),
+)
+
 IDEMPOTENCY_KEYS = Table(
     "idempotency_keys",
     METADATA,

@@ -24,6 +24,7 @@ from sqlalchemy import (
 from app.storage.artifact_file import ArtifactFile
 from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.artifact_rows import Artifacts
+from app.storage.database.baselines import StoredBaselines
 from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
@@ -75,6 +76,7 @@ class RunStore:
         database: where the rows are.
         files: where the artifacts are.
         curves: learning curves of trainings.
+        baselines: distances of one-step look-ahead, which all jobs share.
         kinds: names of the kinds of runs that are not left out.
         keys: idempotency keys.
         robots: stored robots.
@@ -93,6 +95,7 @@ class RunStore:
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)
         self.curves, self.keys = Curves(database), Keys(database)
+        self.baselines = StoredBaselines(database)
         self.sessions = SessionRows(database)
         self.is_public: ColumnElement[bool] | None = None
 

@@ -1,4 +1,4 @@
-"""Revision core_0001: runs with curves and artifacts, idempotency keys, sessions and robots."""
+"""Revision core_0001: runs with curves and artifacts, baselines, keys, sessions and robots."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -64,6 +64,13 @@ def upgrade() -> None:
         sa.Column("sha256", text, nullable=False),
         sa.Column("written_at", time, nullable=False),
     )
+    op.create_table(
+        "baselines",
+        sa.Column("id", text, primary_key=True),
+        sa.Column("distance_m", sa.Double(), nullable=False),
+        sa.Column("created_at", time, nullable=False),
+    )
+    op.create_index("ix_baselines_created_at", "baselines", ["created_at"])
     op.create_table(
         "idempotency_keys",
         sa.Column("key", text, primary_key=True),
