@@ -85,9 +85,10 @@ def main() -> None:
         storage=JournalStorage(JournalFileBackend("tuning.log")),
         study_name=options.agent,
         direction="maximize",
-        sampler=optuna.samplers.TPESampler(seed=SEARCH_SEED),
         load_if_exists=True,
     )
+    # A search that goes on draws other candidates than it began with.
+    study.sampler = optuna.samplers.TPESampler(seed=SEARCH_SEED + len(study.trials))
     study.enqueue_trial({name: declared[name].default for name in space}, skip_if_exists=True)
     search = {**problem, "seeds": options.seeds, "seed": SEARCH_SEED}
     while len(study.get_trials(states=[TrialState.COMPLETE])) < options.candidates:

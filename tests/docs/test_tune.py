@@ -4,6 +4,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+from optuna import load_study
+from optuna.storages import JournalStorage
+from optuna.storages.journal import JournalFileBackend
+
 from tests.docs.programs import DOCS
 from tests.timeouts import LONG_S
 
@@ -36,6 +40,13 @@ def test_a_search_goes_on_and_is_judged_on_held_out_seeds(tmp_path: Path) -> Non
     more = tune(tmp_path, *command, "--candidates", "3")
     assert more.returncode == 0, more.stderr
     assert (tmp_path / "tuning.log").read_text("utf-8").startswith(stored)
+    storage = JournalStorage(JournalFileBackend(str(tmp_path / "tuning.log")))
+    alphas = [
+        trial.params["alpha"]
+        for trial in load_study(study_name="q-learning", storage=storage).trials
+    ]
+    assert alphas[0] == 0.3, "the default"
+    assert len({*alphas}) == 3, "what goes on draws other values"
 
 
 def test_a_setting_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Path) -> None:
