@@ -3,7 +3,7 @@
 import importlib
 import tempfile
 
-from app.cli import without_garbage_collection
+from app.cli.program import without_garbage_collection
 
 _IMPORTED_LATE = (
     "anyio._backends._asyncio",

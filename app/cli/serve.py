@@ -11,8 +11,8 @@ from dataclasses import fields
 from functools import partial
 from typing import Any
 
-from app.cli import without_garbage_collection
 from app.cli.options import CommandParser, integer
+from app.cli.program import without_garbage_collection
 from app.feature_settings import FeatureSettings, installed_settings
 from app.setting_fields import Switch, kind_of
 from app.settings import (

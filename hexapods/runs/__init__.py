@@ -8,8 +8,8 @@
 - `clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
 - `recording` stores motion for playback; `stored_practice` encodes a training's recording as
   arrays, `race_file` a race's, by `step_arrays`; `step_figures` are figures of all steps as one
-  array; `npz_slices` reads parts of a table's arrays;
-  `recorded_walk` reads all of them alike.
+  array; `npz_slices` reads parts of a table's arrays. `recorded_walk` reads recordings of all
+  kinds alike.
 - `gait_analysis` computes footfalls, speed, cycle, posture and energy of a recorded walk,
   `footfall` when its feet are on the ground; `move_comparison` compares each step with the best.
 - `transition_log` keeps what a learner observed, did and earned; `rebuilding` builds a learner
@@ -17,8 +17,8 @@
 - `tables` takes, restores, encodes and validates checkpoints; `table_file` reads a table from its
   file row by row.
 - `preview` computes support, reach, states and speed before anything runs, `recommendation` which
-  learner suits; `best_known` searches for the farthest walks, by `beam_search`, and has those that
-  are stored.
+  learner suits; `best_known` has the farthest walks that are known, by `beam_search`; `baseline`
+  the distances of one-step look-ahead, by all that they depend on.
 
 To add a setting of a training: an annotated field in `config`, and its name in the form
 (`static/js/form.js`). To add one of a lane: an annotated field of `LaneConfig` in `lane`; requests,

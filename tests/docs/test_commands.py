@@ -8,7 +8,7 @@ import shlex
 
 import pytest
 
-from app.cli import _parser
+from app.cli.program import parser_of
 from tests.cli.running import ROOT
 
 _PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -34,5 +34,5 @@ def test_a_documented_command_is_valid(command: str) -> None:
     # What follows is of the shell: other commands, and a variable of the page.
     own = re.split(r" [|>] ", command.replace("$agents", "q-learning"))[0]
     words = shlex.split(own, comments=True)[1:]
-    options = _parser(words).parse_args(words)
+    options = parser_of(words).parse_args(words)
     assert options.command == words[0]

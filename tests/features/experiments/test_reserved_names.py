@@ -3,7 +3,7 @@
 import argparse
 from dataclasses import fields
 
-from app.cli import _parser
+from app.cli.program import parser_of
 from app.features.experiments.response_models import (
     CurveOfSetting,
     PooledView,
@@ -19,7 +19,7 @@ ROWS = (SettingView, PooledView, CurveOfSetting, VersusView)
 
 def names_of_commands() -> set[str]:
     """Options of `train` and `sweep`, and where argparse keeps them."""
-    actions = _parser()._actions
+    actions = parser_of()._actions
     (commands,) = [one for one in actions if isinstance(one, argparse._SubParsersAction)]
     used: set[str] = set()
     for name in ("train", "sweep"):
