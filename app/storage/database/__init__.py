@@ -2,8 +2,8 @@
 
 Start reading at `opening`, which opens the store of a server; `read_only` opens it for commands.
 
-- `store` is the `RunStore`; its parts are `artifact_rows`, `curves`, `baselines`, `keys` and `progress`;
-  `robots` are stored robots.
+- `store` is the `RunStore`; its parts are `artifact_rows`, `curves`, `baselines`, `keys` and
+  `progress`; `robots` are stored robots.
 - `schema` defines the tables, `columns` their types, `migration` and `migrations` upgrade them.
 - `queries` and `rows` read and decode rows of runs, `stored_rows` those of every other table,
   tolerating damaged ones; `listing` reads runs page by page.
