@@ -10,7 +10,7 @@ import numpy as np
 from hexapods.agents import registry
 from hexapods.agents.registry import AgentClass
 from hexapods.domain.creatures import own_gait
-from hexapods.domain.disturbance_documents import as_text, disturbance, parse_disturbance
+from hexapods.domain.disturbance_documents import as_text, disturbance_from, parse_disturbance
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
@@ -267,7 +267,7 @@ def read_disturbance(given: object) -> Disturbance:
             f'a disturbance is such as "limp:legs=1,4" or {{"kind": "limp", "legs": [1, 4]}}, '
             f"not {given!r}"
         )
-    return disturbance(given)
+    return disturbance_from(given)
 
 
 def check_names(function: str, given: Iterable[str], valid: Iterable[str]) -> None:

@@ -34,7 +34,7 @@ from app.storage.run import (
 )
 from app.storage.run_ids import RunIds
 from app.storage.run_kind import WALKS
-from hexapods.domain.disturbance_documents import as_mapping, disturbance
+from hexapods.domain.disturbance_documents import as_mapping, disturbance_from
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.world import check_ends
@@ -280,7 +280,7 @@ class Jobs:
                 world_of(run).then(soon).check(config.robot, config.simulator, config.steps)
             return {"disturbance": as_mapping(given)}
 
-        return disturbance(self._change_live(run_id, checked).changes["disturbance"])
+        return disturbance_from(self._change_live(run_id, checked).changes["disturbance"])
 
     def _change_live(self, run_id: str, checked: Callable[[Run], Mapping[str, Any]]) -> Changed:
         """Send a change to a training's process, and wait for the acknowledgement.

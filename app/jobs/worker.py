@@ -32,7 +32,7 @@ from app.jobs.messages import (
     TrainingTask,
 )
 from hexapods.assembly import build_learner, build_walkers
-from hexapods.domain.disturbance_documents import as_mapping, disturbance
+from hexapods.domain.disturbance_documents import as_mapping, disturbance_from
 from hexapods.domain.errors import HexapodError
 from hexapods.runs.baseline import BASELINES
 from hexapods.runs.racing import race
@@ -84,7 +84,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
     if task.checkpoint is not None:
         restore(learner, task.checkpoint)
         made = task.checkpoint.meta["changes"]
-    control.disturb = lambda given: as_mapping(learner.disturb(disturbance(given), config))
+    control.disturb = lambda given: as_mapping(learner.disturb(disturbance_from(given), config))
     learner.logged, control.take_transitions = [], learner.take_transitions
     control.restore_changes(made, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))

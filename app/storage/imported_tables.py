@@ -9,7 +9,7 @@ import numpy as np
 from app.storage.untrusted_input import Metres, Name, Share, Step
 from hexapods.agents import registry
 from hexapods.agents.tabular import TabularAgent
-from hexapods.domain.disturbance_documents import disturbance
+from hexapods.domain.disturbance_documents import disturbance_from
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
 from hexapods.domain.records import from_json
 from hexapods.domain.settings import complete
@@ -107,7 +107,7 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         raise ValueError(f"{', '.join(unknown)} cannot change while a training runs")
     msgspec.convert(change["step"], Step)
     if "disturbance" in change:
-        disturbance(change["disturbance"])
+        disturbance_from(change["disturbance"])
     if "pace" in change:
         pace.check(change["pace"])
     for name, value in settings.items():

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple, get_args
 
 from app.storage.run_kind import Rows
 from app.storage.stored_robot import StoredRobot
-from hexapods.domain.disturbance_documents import disturbance
+from hexapods.domain.disturbance_documents import disturbance_from
 from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.results import Count, RaceResult, TrainingResult
@@ -189,5 +189,5 @@ def world_of(run: Run) -> World:
     world = getattr(run.config, "world", UNDISTURBED)
     for change in run.changes:
         if "disturbance" in change:
-            world = world.then(disturbance(change["disturbance"]))
+            world = world.then(disturbance_from(change["disturbance"]))
     return world

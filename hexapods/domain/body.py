@@ -217,8 +217,8 @@ class Robot:
     def of_legs(self, name: str) -> tuple[float, ...]:
         """Return a number that legs may have their own of, such as `coxa_m`, leg by leg."""
         usual = getattr(self, name)
-        own = (getattr(leg, name) for leg in self.legs)
-        return tuple(usual if value is None else value for value in own)
+        values = (getattr(leg, name) for leg in self.legs)
+        return tuple(usual if value is None else value for value in values)
 
     @property
     def feet_out_m(self) -> tuple[float, ...]:

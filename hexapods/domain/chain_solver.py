@@ -120,10 +120,10 @@ class ChainSolver:
         # Relative to the size, so that all coefficients are of one order.
         terms = _monomials(to_first @ places[:, is_reached] / size)
         terms = np.moveaxis(terms, -1, 0).reshape(-1, 21)[:, :_MONOMIALS]
-        found, *_ = np.linalg.lstsq(terms, angles[is_reached], rcond=None)
+        fitted, *_ = np.linalg.lstsq(terms, angles[is_reached], rcond=None)
         degrees = np.repeat((1, 2, 2, 3, 3, 3, 3), 3)[:_MONOMIALS]
         coefficients = np.zeros((21, self.most))
-        coefficients[:_MONOMIALS] = found / size ** degrees[:, None]
+        coefficients[:_MONOMIALS] = fitted / size ** degrees[:, None]
         return np.moveaxis(coefficients.reshape(7, 3, -1), 1, 2).ravel()
 
     def feet_m(self, turned: FloatArray) -> FloatArray:
@@ -276,16 +276,16 @@ def _monomials(moved: FloatArray) -> FloatArray:
 
     They are x y z; xx yy zz; xy yz zx; xxx yyy zzz; xxy yyz zzx; xxz yyx zzy; xyz.
     """
-    found = np.zeros((7, *moved.shape))
+    products = np.zeros((7, *moved.shape))
     after = moved.take(_NEXT, 0)
-    found[0] = moved
-    squares = np.multiply(moved, moved, out=found[1])
-    np.multiply(moved, after, out=found[2])
-    np.multiply(squares, moved, out=found[3])
-    np.multiply(squares, after, out=found[4])
-    np.multiply(squares, moved.take(_LAST, 0), out=found[5])
-    np.multiply(found[2, 0], moved[2], out=found[6, 0])
-    return found
+    products[0] = moved
+    squares = np.multiply(moved, moved, out=products[1])
+    np.multiply(moved, after, out=products[2])
+    np.multiply(squares, moved, out=products[3])
+    np.multiply(squares, after, out=products[4])
+    np.multiply(squares, moved.take(_LAST, 0), out=products[5])
+    np.multiply(products[2, 0], moved[2], out=products[6, 0])
+    return products
 
 
 def _damped_step(columns: FloatArray, error: FloatArray, damping: FloatArray) -> FloatArray:
@@ -296,10 +296,10 @@ def _damped_step(columns: FloatArray, error: FloatArray, damping: FloatArray) ->
         error: (3, n).
         damping: (n,).
     """
-    diagonals, others = columns * columns, columns * columns.take(_NEXT, 0)
-    diagonal, other = diagonals[:, 0] + damping, others[:, 0]  # xx yy zz; xy yz zx
+    diagonals, off_diagonals = columns * columns, columns * columns.take(_NEXT, 0)
+    diagonal, other = diagonals[:, 0] + damping, off_diagonals[:, 0]  # xx yy zz; xy yz zx
     for joint in range(1, columns.shape[1]):
-        diagonal, other = diagonal + diagonals[:, joint], other + others[:, joint]
+        diagonal, other = diagonal + diagonals[:, joint], other + off_diagonals[:, joint]
     next_diagonal, last_diagonal = diagonal.take(_NEXT, 0), diagonal.take(_LAST, 0)
     next_other, last_other = other.take(_NEXT, 0), other.take(_LAST, 0)
     cofactors = next_diagonal * last_diagonal - next_other * next_other
@@ -363,9 +363,9 @@ def _expansion(
     inverse = np.linalg.pinv(columns.T)  # (joints, 3)
     axes = chain.axes @ to_first.T
     bend = np.empty((count, count, 3))
-    for one in range(count):
+    for joint in range(count):
         for other in range(count):
-            bend[one, other] = np.cross(axes[min(one, other)], columns[max(one, other)])
+            bend[joint, other] = np.cross(axes[min(joint, other)], columns[max(joint, other)])
     second = -0.5 * np.einsum("jc,abc,ax,by->jxy", inverse, bend, inverse, inverse)
     expansion[0, :count] = inverse
     for axis in range(3):

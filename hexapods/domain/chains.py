@@ -146,8 +146,8 @@ class ChainKinematics(FootKinematics):
         ones = np.ones(len(legs))
         self._home_rad = np.zeros((len(legs), solver.most))
         for leg in range(len(legs)):
-            own = legs.standing_rad[legs.leg_of_joint == leg]
-            self._home_rad[leg, : len(own)] = own
+            home_rad = legs.standing_rad[legs.leg_of_joint == leg]
+            self._home_rad[leg, : len(home_rad)] = home_rad
         self.frames = np.array(
             [
                 self._cos * ones,
@@ -186,11 +186,11 @@ class ChainKinematics(FootKinematics):
         angles = np.empty((len(legs), self._solver.most))
         with np.errstate(invalid="ignore", over="ignore"):
             for start in range(0, len(legs), _CHUNK):
-                part = slice(start, start + _CHUNK)
-                which = legs[part].tobytes()
+                chunk = slice(start, start + _CHUNK)
+                which = legs[chunk].tobytes()
                 parameters = (self._kept if len(legs) <= _FEW else self._parameters_of)(which)
-                turned = self._solver.solve(offsets[:, part], parameters, near)
-                angles[part] = self._home_rad[legs[part]] + turned
+                turned = self._solver.solve(offsets[:, chunk], parameters, near)
+                angles[chunk] = self._home_rad[legs[chunk]] + turned
         return angles.reshape(*shape, -1)
 
     def _parameters_of(self, legs: bytes) -> FootParameters:
@@ -202,8 +202,8 @@ class ChainKinematics(FootKinematics):
         x, y, z = (self._solver.feet_m(turned) - self._feet_m)[:, 0].tolist()
         cos, sin = self._cos, self._sin
         return [
-            (cos * one - sin * two, sin * one + cos * two, up)
-            for one, two, up in zip(x, y, z, strict=True)
+            (cos * x_m - sin * y_m, sin * x_m + cos * y_m, up)
+            for x_m, y_m, up in zip(x, y, z, strict=True)
         ]
 
 

@@ -34,10 +34,10 @@ class Creature:
     description: str
 
 
-def at(x_m: float, y_m: float, yaw_deg: float, foot_out_m: float, **own: float) -> LegMount:
+def at(x_m: float, y_m: float, yaw_deg: float, foot_out_m: float, **dimensions: float) -> LegMount:
     """Return a leg by the place of its coxa joint in the body frame."""
     azimuth_deg, radius_m = math.degrees(math.atan2(y_m, x_m)), math.hypot(x_m, y_m)
-    return LegMount(azimuth_deg, radius_m, yaw_deg=yaw_deg, foot_out_m=foot_out_m, **own)
+    return LegMount(azimuth_deg, radius_m, yaw_deg=yaw_deg, foot_out_m=foot_out_m, **dimensions)
 
 
 def both_sides(right: Sequence[LegMount]) -> tuple[LegMount, ...]:
@@ -49,11 +49,11 @@ def both_sides(right: Sequence[LegMount]) -> tuple[LegMount, ...]:
     return right[0], *left, *right[:0:-1]
 
 
-def _kit(name: str, mass_kg: float, legs: tuple[LegMount, ...], **own: Any) -> Robot:
+def _kit(name: str, mass_kg: float, legs: tuple[LegMount, ...], **dimensions: Any) -> Robot:
     """Return a kit of which the mass is known: the torso has what the legs leave."""
-    made = Robot(name=name, legs=legs, **own)
-    per_leg_kg = made.coxa_kg + made.femur_kg + made.tibia_kg + made.foot_kg
-    return replace(made, torso_kg=mass_kg - len(legs) * per_leg_kg)
+    robot = Robot(name=name, legs=legs, **dimensions)
+    per_leg_kg = robot.coxa_kg + robot.femur_kg + robot.tibia_kg + robot.foot_kg
+    return replace(robot, torso_kg=mass_kg - len(legs) * per_leg_kg)
 
 
 def _servo(stall_nm: float, speed_deg_s: float) -> dict[str, float]:

@@ -12,7 +12,7 @@ from hexapods.domain.robot import MAX_LEGS
 from hexapods.domain.settings import declared_fields
 
 
-def disturbance(data: Mapping[str, Any] | Disturbance) -> Disturbance:
+def disturbance_from(data: Mapping[str, Any] | Disturbance) -> Disturbance:
     """Build a disturbance from user input: its kind and its fields by name, or itself.
 
     Raises:
@@ -23,25 +23,29 @@ def disturbance(data: Mapping[str, Any] | Disturbance) -> Disturbance:
         return data
     if not isinstance(data, Mapping):
         raise InvalidInput(f"a disturbance is an object of a kind, {', '.join(KINDS)}, and fields")
-    given = dict(data)
-    name = given.pop("kind", None)
+    values = dict(data)
+    name = values.pop("kind", None)
     if not isinstance(name, str) or name not in KINDS:
         raise UnknownName("kind of disturbance", name, KINDS)
     kind = KINDS[name]
-    known = fields(kind)
-    for field in given:
-        if field not in {one.name for one in known}:
-            raise UnknownName(f"field of {name}", field, [one.name for one in known])
-    missing = [one.name for one in known if one.default is MISSING and one.name not in given]
+    kind_fields = fields(kind)
+    for field in values:
+        if field not in {field_.name for field_ in kind_fields}:
+            raise UnknownName(f"field of {name}", field, [field_.name for field_ in kind_fields])
+    missing = [
+        field_.name
+        for field_ in kind_fields
+        if field_.default is MISSING and field_.name not in values
+    ]
     if missing:
         raise InvalidInput(f"{name} needs {', '.join(missing)}")
-    return kind(**given)
+    return kind(**values)
 
 
 def as_mapping(value: Disturbance) -> dict[str, Any]:
     """Return a disturbance in plain types, the inverse of `disturbance`."""
-    given = {one.name: getattr(value, one.name) for one in fields(value)}
-    plain = {k: list(v) if isinstance(v, tuple) else v for k, v in given.items() if v is not None}
+    values = {field.name: getattr(value, field.name) for field in fields(value)}
+    plain = {k: list(v) if isinstance(v, tuple) else v for k, v in values.items() if v is not None}
     return {"kind": value.kind, **plain}
 
 
@@ -54,9 +58,9 @@ def json_schema(kind: type[Disturbance]) -> Schema:
     leg = {"type": "integer", "minimum": 1, "maximum": MAX_LEGS}
     legs = {"type": "array", "items": leg, "minItems": 1, "maxItems": MAX_LEGS}
     properties: Schema = {"kind": {"const": kind.kind, "type": "string"}}
-    for one in fields(kind):
-        setting = declared.get(one.name)
-        properties[one.name] = (
+    for field in fields(kind):
+        setting = declared.get(field.name)
+        properties[field.name] = (
             {**legs, "title": LEGS.title, "description": LEGS.help}
             if setting is None
             else TypeAdapter(setting.annotation).json_schema()
@@ -66,7 +70,7 @@ def json_schema(kind: type[Disturbance]) -> Schema:
         "title": kind.title,
         "description": kind.help,
         "properties": properties,
-        "required": ["kind", *(one.name for one in fields(kind) if one.default is MISSING)],
+        "required": ["kind", *(field.name for field in fields(kind) if field.default is MISSING)],
         "additionalProperties": False,
     }
 
@@ -89,7 +93,7 @@ SENT: Schema = {
     "additionalProperties": _PART,
 }
 """JSON schema of a disturbance in answers."""
-AnyDisturbance = Annotated[Disturbance, JsonForm(disturbance, as_mapping, _any_kind, SENT)]
+AnyDisturbance = Annotated[Disturbance, JsonForm(disturbance_from, as_mapping, _any_kind, SENT)]
 """A disturbance of any kind."""
 
 
@@ -99,12 +103,12 @@ SHORT = MappingProxyType({"at": "at_step", "until": "until_step"})
 
 def as_text(value: Disturbance) -> str:
     """Return a disturbance as on a command line, the inverse of `parse_disturbance`."""
-    given = as_mapping(value)
-    name = given.pop("kind")
-    times = [(short, given.pop(field)) for short, field in SHORT.items() if field in given]
+    values = as_mapping(value)
+    name = values.pop("kind")
+    times = [(short, values.pop(field)) for short, field in SHORT.items() if field in values]
     parts = [
-        f"{field}={','.join(map(str, one)) if isinstance(one, list) else one}"
-        for field, one in [*given.items(), *times]
+        f"{field}={','.join(map(str, value_)) if isinstance(value_, list) else value_}"
+        for field, value_ in [*values.items(), *times]
     ]
     return ":".join([name, *parts])
 
@@ -119,18 +123,18 @@ def parse_disturbance(text: str) -> Disturbance:
     if name not in KINDS:
         raise UnknownName("disturbance", name, KINDS)
     settings = declared_fields(KINDS[name])  # type: ignore[arg-type]
-    given: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for part in parts:
         field, equals, value = part.partition("=")
         field = SHORT.get(field, field)
-        if not equals or field in given or field == "kind":
+        if not equals or field in values or field == "kind":
             raise InvalidInput(
                 f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {part!r} is not"
             )
         if field in settings:
-            given[field] = settings[field].parse(value)
+            values[field] = settings[field].parse(value)
         elif field == "legs" and all(leg.isdecimal() and len(leg) < 4 for leg in value.split(",")):
-            given[field] = [int(leg) for leg in value.split(",")]
+            values[field] = [int(leg) for leg in value.split(",")]
         else:
-            given[field] = value
-    return disturbance({"kind": name, **given})
+            values[field] = value
+    return disturbance_from({"kind": name, **values})

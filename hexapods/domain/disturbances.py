@@ -417,9 +417,13 @@ KINDS: Mapping[str, type[Disturbance]] = {
 }  # fmt: skip
 
 
-def is_nothing(one: Disturbance, robot: Robot) -> bool:
+def is_nothing(disturbance: Disturbance, robot: Robot) -> bool:
     """Whether it only ends an earlier one: a slope of 0°, the friction with which it was built."""
-    if one.size is None:
+    if disturbance.size is None:
         return False
-    nothing = getattr(robot, one.nothing) if isinstance(one.nothing, str) else one.nothing
-    return bool(getattr(one, one.size) == nothing)
+    nothing = (
+        getattr(robot, disturbance.nothing)
+        if isinstance(disturbance.nothing, str)
+        else disturbance.nothing
+    )
+    return bool(getattr(disturbance, disturbance.size) == nothing)

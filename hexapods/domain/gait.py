@@ -132,40 +132,40 @@ GAIT_TITLES: Mapping[str, str] = {
 """Display names of the named gaits."""
 
 
-def read_gait(given: Any) -> str | GaitSpec:
+def read_gait(value: Any) -> str | GaitSpec:
     """Return a gait from user input: its name, or its legs with symmetry, pairs or groups.
 
     Raises:
         UnknownName, InvalidInput: if it is none.
     """
-    if isinstance(given, GaitSpec):
-        return given
-    if isinstance(given, str):
-        gait_spec(given)
-        return given
-    if not isinstance(given, Mapping):
-        raise InvalidInput(f"a gait is one of {', '.join(NAMED_GAITS)}, or its legs, not {given!r}")
-    names = [one.name for one in fields(GaitSpec)]
-    if set(given) - {*names} or not {"right_leg", "left_leg"} <= {*given}:
+    if isinstance(value, GaitSpec):
+        return value
+    if isinstance(value, str):
+        gait_spec(value)
+        return value
+    if not isinstance(value, Mapping):
+        raise InvalidInput(f"a gait is one of {', '.join(NAMED_GAITS)}, or its legs, not {value!r}")
+    names = [field.name for field in fields(GaitSpec)]
+    if set(value) - {*names} or not {"right_leg", "left_leg"} <= {*value}:
         raise InvalidInput(
             "a gait needs right_leg and left_leg, and one of symmetry, pairs and groups; "
-            f"not {', '.join(map(str, sorted(given))) or 'nothing'}"
+            f"not {', '.join(map(str, sorted(value))) or 'nothing'}"
         )
-    return GaitSpec(**{name: _whole(part) for name, part in given.items()})
+    return GaitSpec(**{name: _whole(legs) for name, legs in value.items()})
 
 
-def _whole(part: Any) -> Any:
+def _whole(value: Any) -> Any:
     """Convert floats that are whole, as JSON does not distinguish 2.0 from 2."""
-    if isinstance(part, list | tuple):
-        return tuple(map(_whole, part))
-    return int(part) if isinstance(part, float) and part.is_integer() else part
+    if isinstance(value, list | tuple):
+        return tuple(map(_whole, value))
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 def gait_as_json(value: str | GaitSpec) -> str | dict[str, Any]:
     """Return a gait fit for JSON, the inverse of `read_gait`."""
     if isinstance(value, str):
         return value
-    return {name: part for name, part in asdict(value).items() if part is not None}
+    return {name: legs for name, legs in asdict(value).items() if legs is not None}
 
 
 _NAME: Schema = {"type": "string", "enum": list(NAMED_GAITS)}

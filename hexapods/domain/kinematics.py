@@ -58,11 +58,14 @@ class _CoxaFemurTibia(Legs):
         links = []
         for number, leg in enumerate(self._robot.legs):
             coxa, femur, tibia = angles[3 * number : 3 * number + 3]
-            part, to = self._parts[number], yaws[number] + coxa
-            knee = part.coxa + part.femur * math.cos(femur), part.femur * math.sin(femur)
+            leg_parts, to = self._parts[number], yaws[number] + coxa
+            knee = (
+                leg_parts.coxa + leg_parts.femur * math.cos(femur),
+                leg_parts.femur * math.sin(femur),
+            )
             foot = (
-                knee[0] + part.tibia * math.cos(femur + tibia),
-                knee[1] + part.tibia * math.sin(femur + tibia),
+                knee[0] + leg_parts.tibia * math.cos(femur + tibia),
+                knee[1] + leg_parts.tibia * math.sin(femur + tibia),
             )
             at = np.array(
                 [
@@ -72,7 +75,7 @@ class _CoxaFemurTibia(Legs):
                 ]
             )
             along = np.array([math.cos(to), math.sin(to), 0])
-            profile = np.array([(0.0, 0.0), (part.coxa, 0.0), knee, foot])
+            profile = np.array([(0.0, 0.0), (leg_parts.coxa, 0.0), knee, foot])
             links.append(at + profile[:, :1] * along + profile[:, 1:] * np.array([0, 0, 1]))
         return links
 
@@ -228,12 +231,12 @@ def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
 
 def out_of_reach(robot: Robot, gait: Gait, grid: FootGrid) -> dict[int, str]:
     """Return what legs cannot reach of their grid, in a sentence by the leg's number."""
-    found: dict[int, str] = {}
+    problems: dict[int, str] = {}
     for passage in _passages(robot, gait, grid):
         if passage.why is not None:
             for leg, reason in _reach_problems(legs_of(robot), passage.angles):
-                found.setdefault(leg, passage.sentence(leg, reason))
-    return found
+                problems.setdefault(leg, passage.sentence(leg, reason))
+    return problems
 
 
 class _Passage(NamedTuple):
@@ -300,7 +303,7 @@ def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
         )
         of_group = np.isin(legs.leg_of_joint, np.array(group) - 1)
         low, high = legs.limits_rad[:, of_group]
-        for sign, found in ((-1, back), (1, ahead)):
+        for sign, distances in ((-1, back), (1, ahead)):
             x, y, z = np.meshgrid(widths, sign * outward, heights, indexing="ij")
             offsets = np.stack((x, y, z), -1)[..., None, :].repeat(len(legs), -2)
             angles = kinematics.joint_angles(offsets)[..., of_group]
@@ -314,7 +317,7 @@ def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
                     "link lengths, home radius or body height",
                     group,
                 )
-            found.append(sign * float(reached[-1]))
+            distances.append(sign * float(reached[-1]))
     return Reach(tuple(back), tuple(ahead))
 
 
@@ -324,12 +327,12 @@ def _reach_problems(legs: Legs, angles: FloatArray) -> Iterator[tuple[int, str]]
     is_possible = (low <= angles) & (angles <= high)
     if is_possible.all():
         return
-    told = 0
+    reported_leg = 0
     for index in np.flatnonzero(~is_possible).tolist():
         joint = legs.joints[index]
-        if joint.leg == told:
+        if joint.leg == reported_leg:
             continue
-        told = joint.leg
+        reported_leg = joint.leg
         if np.isnan(angles[legs.leg_of_joint == joint.leg - 1]).any():
             yield joint.leg, "it is out of the reach of its links"
         else:

@@ -35,15 +35,15 @@ def read_model_content(content: Mapping[str, Any]) -> ModelRobot:
         InvalidInput: if its model or a number is not valid.
     """
     try:
-        given = dict(content["robot"])
-        legs = tuple(LegMount(**_numbers(leg, _LEG)) for leg in given.pop("legs"))
+        robot = dict(content["robot"])
+        legs = tuple(LegMount(**_numbers(leg, _LEG)) for leg in robot.pop("legs"))
         # As JSON, of which a strict reader takes lists for tuples, and no texts for numbers.
         model = from_json(RobotModel, json.dumps(content["model"]).encode(), strict=True)
         if len(legs) != len(model.feet):
             raise ValueError("it has other legs than its model")
         if {*content} != {"model", "robot"}:
             raise ValueError("it holds more than a robot")
-        numbers: dict[str, Any] = _numbers(given, NUMBERS)
+        numbers: dict[str, Any] = _numbers(robot, NUMBERS)
         return ModelRobot(name="robot", legs=legs, model=model, **numbers)
     except InvalidInput:
         raise
@@ -51,17 +51,17 @@ def read_model_content(content: Mapping[str, Any]) -> ModelRobot:
         raise DamagedFile(f"the document of a robot is damaged: {error}") from error
 
 
-def _numbers(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, float]:
+def _numbers(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, float]:
     """Return numbers by these names.
 
     Raises:
         ValueError: if there are others, or one is none.
     """
-    if {*given} != {*names}:
+    if {*values} != {*names}:
         raise ValueError(f"it must have {', '.join(names)}")
-    for name, number in given.items():
+    for name, number in values.items():
         if isinstance(number, bool) or not isinstance(number, int | float):
             raise InvalidInput(f"robot.{name} must be a number, not {str(number)[:100]!r}")
         if not abs(number) <= _LARGEST:
             raise InvalidInput(f"robot.{name} is too large: {number}")
-    return {name: float(number) for name, number in given.items()}
+    return {name: float(number) for name, number in values.items()}

@@ -104,8 +104,8 @@ def turned_mounts(model: RobotModel, by_deg: Sequence[float]) -> RobotModel:
     return replace(model, links=tuple(links))
 
 
-def _quaternion_product(one: Sequence[float], other: Quaternion) -> Quaternion:
-    w, x, y, z = one
+def _quaternion_product(first: Sequence[float], other: Quaternion) -> Quaternion:
+    w, x, y, z = first
     a, b, c, d = other
     product = np.array(
         [

@@ -61,7 +61,7 @@ class ModelRobot(Robot):
     model: RobotModel = field(kw_only=True)
 
     def servo_of(self, leg: int, joint: str) -> ServoStrength:
-        of_joint = next(one for one in self.model.joints_of(leg) if one.name == joint)
+        of_joint = next(joint_ for joint_ in self.model.joints_of(leg) if joint_.name == joint)
         return ServoStrength(
             *(
                 getattr(of_joint, name) * (getattr(self, name) / largest)
@@ -123,7 +123,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
     swing_s = min(max(0.2 * slowness, 0.1), 0.5)
     if len(model.feet) <= 4:
         swing_s = min(swing_s, _LONGEST_SWING_S)
-    given: dict[str, Any] = {
+    fields_: dict[str, Any] = {
         "step_height_m": _STEP_HEIGHT_SHARE * leg_m,
         "swing_s": swing_s,
         "shift_s": min(max(0.12 * slowness, 0.06), 0.3),
@@ -145,7 +145,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
         foot_radius_m=foot_radius_m,
         joint_armature=max(joint.armature for joint in joints),
         joint_damping=max(*(joint.damping for joint in joints), 1e-4),
-        **given,
+        **fields_,
     )
 
 
@@ -196,7 +196,7 @@ def _largest_of(joints: Sequence[ModelJoint]) -> tuple[float, ...]:
 
 def leg_length_m(chains: Sequence[Chain]) -> float:
     """Return the mean distance of the feet at home from the first joints of their legs [m]."""
-    return fmean(float(np.linalg.norm(one.foot_m - one.anchors_m[0])) for one in chains)
+    return fmean(float(np.linalg.norm(chain.foot_m - chain.anchors_m[0])) for chain in chains)
 
 
 def _time_step_s(joints: Sequence[ModelJoint]) -> float:

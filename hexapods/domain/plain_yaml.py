@@ -102,7 +102,7 @@ def root_node(content: bytes, name: str, what: str, loader: type[NodeLoader] = N
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = "" if mark is None else f", line {mark.line + 1}"
-        parts = [getattr(error, part, None) for part in ("context", "problem")]
+        parts = [getattr(error, attribute, None) for attribute in ("context", "problem")]
         problem = ", ".join(filter(None, parts)) or "it has characters that YAML does not allow"
         raise InvalidInput(f"{name}{line}: not valid YAML: {problem}") from error
     except RecursionError as error:
@@ -155,17 +155,17 @@ def _plain(node: Any, name: str) -> Any:
         except ValueError:
             _refuse(node, name, f"{node.value[:40]!r} does not fit its tag")
     if isinstance(node, yaml.SequenceNode) and tag == "seq":
-        return [_plain(one, name) for one in node.value]
+        return [_plain(item, name) for item in node.value]
     if not isinstance(node, yaml.MappingNode) or tag != "map":
         _refuse(node, name, f"the tag {tag[:40]!r} is not read")
-    found: dict[str, Any] = {}
+    mapping: dict[str, Any] = {}
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):
             _refuse(key, name, "a name is a word, not a list or mapping")
-        if key.value in found:
+        if key.value in mapping:
             _refuse(key, name, f"{key.value[:40]!r} is given twice")
-        found[key.value] = _plain(value, name)
-    return found
+        mapping[key.value] = _plain(value, name)
+    return mapping
 
 
 _SCALARS: dict[str, Callable[[str], Any]] = {

@@ -52,15 +52,15 @@ class Record:
         schema, attributes = handler(source), described_attributes(source)
         about = {"description": summary_of(source)}
         schema.setdefault("metadata", {})["pydantic_js_updates"] = about
-        for one in schema["schema"]["fields"]:
-            if one["name"] in attributes:
-                describe = partial(_described, attributes[one["name"]])
-                one.setdefault("metadata", {}).setdefault("pydantic_js_functions", []).append(
+        for field in schema["schema"]["fields"]:
+            if field["name"] in attributes:
+                describe = partial(_described, attributes[field["name"]])
+                field.setdefault("metadata", {}).setdefault("pydantic_js_functions", []).append(
                     describe
                 )
-            if one["name"] in cls.json_names:
-                name = cls.json_names[one["name"]]
-                one |= {"validation_alias": name, "serialization_alias": name}
+            if field["name"] in cls.json_names:
+                name = cls.json_names[field["name"]]
+                field |= {"validation_alias": name, "serialization_alias": name}
         return schema
 
 
@@ -78,7 +78,7 @@ def summary_of(record: type) -> str:
 
 def described_attributes(record: type) -> dict[str, str]:
     """Return what the docstrings of a class and of its bases tell of their attributes, by name."""
-    told: dict[str, str] = {}
+    descriptions: dict[str, str] = {}
     for base in reversed(record.__mro__):
         about = inspect.cleandoc(vars(base).get("__doc__") or "")
         section = about.partition("Attributes:\n")[2].partition("\n\n")[0]
@@ -86,8 +86,8 @@ def described_attributes(record: type) -> dict[str, str]:
             names, _, text = item.partition(":")
             # Of a field that may be left out in Python JSON has null.
             text = re.sub(r"\bNone\b", "null", " ".join(text.split()))
-            told |= dict.fromkeys(names.split(", "), text)
-    return told
+            descriptions |= dict.fromkeys(names.split(", "), text)
+    return descriptions
 
 
 @dataclass(frozen=True, eq=False)

@@ -93,31 +93,31 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
         return value
     if not isinstance(value, Mapping):
         return _by_id(str(value), None) if robot_documents.is_id(value) else _preset(value)
-    given = dict(value)
-    if "id" in given:
-        return _changed(_stored(given), given)
-    return _changed(_preset(given.pop("preset", "stiff")), given)
+    values = dict(value)
+    if "id" in values:
+        return _changed(_stored(values), values)
+    return _changed(_preset(values.pop("preset", "stiff")), values)
 
 
-def _changed(base: Robot, given: dict[str, Any]) -> Robot:
+def _changed(base: Robot, values: dict[str, Any]) -> Robot:
     """Return a robot with the fields of an input that differ from another's."""
     for name in ("n_legs", "mount_radius_m", "legs"):
-        if name in given and given[name] is None:
+        if name in values and values[name] is None:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
     if isinstance(base, ModelRobot):
-        return changed_model(base, given)
-    legs = _legs(given, base)
+        return changed_model(base, values)
+    legs = _legs(values, base)
     numbers = {f.name for f in fields(Robot)}.difference(NO_NUMBERS)
-    for name, number in given.items():
+    for name, number in values.items():
         if name not in numbers:
             valid = ["preset", "id", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
             raise UnknownName("robot field", name, valid)
-        given[name] = _number(name, number)
-    changed = replace(base, legs=legs, **given)
+        values[name] = _number(name, number)
+    changed = replace(base, legs=legs, **values)
     return changed if changed == base else replace(changed, name=f"{base.name}{_MODIFIED}")
 
 
-def changed_model(base: ModelRobot, given: Mapping[str, Any]) -> ModelRobot:
+def changed_model(base: ModelRobot, values: Mapping[str, Any]) -> ModelRobot:
     """Return a robot from a file with other servos, friction or times.
 
     Raises:
@@ -125,12 +125,12 @@ def changed_model(base: ModelRobot, given: Mapping[str, Any]) -> ModelRobot:
         InvalidInput: for a value out of range.
     """
     changes: dict[str, Any] = {}
-    for name, value in given.items():
+    for name, value in values.items():
         if name not in base.changeable:
             raise UnknownName("field that can differ from a robot's file", name, base.changeable)
         # Servos of large robots are far stronger than those of a hexapod.
-        own = getattr(base, name)
-        limits = (own / 100, own * 100) if name.startswith("servo_") else RANGES[name]
+        present = getattr(base, name)
+        limits = (present / 100, present * 100) if name.startswith("servo_") else RANGES[name]
         changes[name] = _limited(name, value, limits)
     changed = replace(base, **changes)
     return changed if changed == base else replace(changed, name=f"{base.name}{_MODIFIED}")
@@ -161,9 +161,9 @@ def as_mapping(value: Robot) -> dict[str, Any]:
 
 def _differing(value: Robot, from_base: Robot) -> dict[str, Any]:
     differs = {
-        one.name: getattr(value, one.name)
-        for one in fields(value)
-        if one.compare and getattr(value, one.name) != getattr(from_base, one.name)
+        field.name: getattr(value, field.name)
+        for field in fields(value)
+        if field.compare and getattr(value, field.name) != getattr(from_base, field.name)
     }
     if "legs" in differs:
         differs["legs"] = [_leg_as_mapping(leg) for leg in value.legs]
@@ -198,9 +198,9 @@ def read_document(data: bytes, name: str | None = None) -> Robot:
         DamagedFile: if it is none.
         InvalidInput: if its robot is not valid.
     """
-    made = parse_document(data)
+    parsed = parse_document(data)
     robot_documents.add(data)
-    return replace(made, name=_name_of(robot_documents.id_of(data), name))
+    return replace(parsed, name=_name_of(robot_documents.id_of(data), name))
 
 
 @lru_cache(maxsize=32)
@@ -209,19 +209,19 @@ def parse_document(data: bytes) -> Robot:
     content = robot_documents.decode(data)
     if "model" in content:
         return replace(read_model_content(content), id=robot_documents.id_of(data))
-    given = content.pop("robot", None)
+    values = content.pop("robot", None)
     # All of it, so that no other document holds the same robot.
-    if content or not isinstance(given, dict) or {*given} | _BOX != {*RANGES, "legs"}:
+    if content or not isinstance(values, dict) or {*values} | _BOX != {*RANGES, "legs"}:
         raise DamagedFile("the document of a robot is damaged: it must have its legs and numbers")
-    return replace(_changed(Robot(), given), id=robot_documents.id_of(data))
+    return replace(_changed(Robot(), values), id=robot_documents.id_of(data))
 
 
-def _stored(given: dict[str, Any]) -> Robot:
+def _stored(values: dict[str, Any]) -> Robot:
     """Pop `id` and `name` from an input, and return the stored robot."""
-    robot_id, name = given.pop("id"), given.pop("name", None)
+    robot_id, name = values.pop("id"), values.pop("name", None)
     if name is not None and not (isinstance(name, str) and len(name) <= MAX_NAME):
         raise InvalidInput(f"robot.name must be a text of at most {MAX_NAME} characters")
-    if "preset" in given:
+    if "preset" in values:
         raise InvalidInput("robot: give the id of a stored robot, or a preset, not both")
     if not robot_documents.is_id(robot_id):
         raise InvalidInput(
@@ -231,8 +231,8 @@ def _stored(given: dict[str, Any]) -> Robot:
 
 
 def _by_id(robot_id: str, name: str | None) -> Robot:
-    made = parse_document(robot_documents.find(robot_id, name))
-    return replace(made, name=_name_of(robot_id, name))
+    parsed = parse_document(robot_documents.find(robot_id, name))
+    return replace(parsed, name=_name_of(robot_id, name))
 
 
 def _name_of(robot_id: str, name: str | None) -> str:
@@ -243,7 +243,7 @@ def _name_of(robot_id: str, name: str | None) -> str:
 def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
     """Return a leg's place, and what differs from the robot's other legs."""
     place = {"azimuth_deg": leg.azimuth_deg, "radius_m": leg.radius_m}
-    usual = {one.name: one.default for one in fields(LegMount)}
+    usual = {field.name: field.default for field in fields(LegMount)}
     return place | {k: v for k, v in asdict(leg).items() if k not in place and v != usual[k]}
 
 
@@ -259,7 +259,7 @@ def written_out(value: Robot) -> dict[str, float | None]:
 def legs_written_out(value: Robot) -> list[dict[str, float]]:
     """Return every number of each leg, as in a request: also those that are the robot's."""
     is_from_file = isinstance(value, ModelRobot)
-    own = {} if is_from_file else {name: value.of_legs(name) for name in _OWN}
+    columns = {} if is_from_file else {name: value.of_legs(name) for name in _OWN}
     return [
         {
             "x_m": leg.radius_m * math.cos(math.radians(leg.azimuth_deg)),
@@ -267,7 +267,7 @@ def legs_written_out(value: Robot) -> list[dict[str, float]]:
             "z_m": leg.z_m,
             "yaw_deg": leg.direction_deg,
             "foot_out_m": out_m,
-            **{name: values[number] for name, values in own.items()},
+            **{name: values[number] for name, values in columns.items()},
         }
         for number, (leg, out_m) in enumerate(zip(value.legs, value.feet_out_m, strict=True))
     ]
@@ -279,10 +279,10 @@ def _preset(name: object) -> Robot:
     return PRESETS[name]
 
 
-def _legs(given: dict[str, Any], base: Robot) -> tuple[LegMount, ...]:
+def _legs(values: dict[str, Any], base: Robot) -> tuple[LegMount, ...]:
     """Pop `n_legs`, `mount_radius_m` and `legs` from the input and return the mounts."""
-    count, radius = given.pop("n_legs", None), given.pop("mount_radius_m", None)
-    mounts = given.pop("legs", None)
+    count, radius = values.pop("n_legs", None), values.pop("mount_radius_m", None)
+    mounts = values.pop("legs", None)
     if mounts is not None:
         if count is not None or radius is not None:
             raise InvalidInput("robot: give legs one by one, or n_legs and mount_radius_m")
@@ -305,27 +305,30 @@ def _mounts(mounts: object) -> tuple[LegMount, ...]:
     read = []
     for number, mount in enumerate(mounts, start=1):
         if not isinstance(mount, Mapping) or set(mount) - {*PLACED_RANGES}:
-            others = ", ".join(
+            optional = ", ".join(
                 name for name in LEG_RANGES if name not in ("azimuth_deg", "radius_m")
             )
-            raise InvalidInput(f"{shape}, each of which may have {others}")
+            raise InvalidInput(f"{shape}, each of which may have {optional}")
         read.append(_mount(number, mount))
     return tuple(read)
 
 
 def _mount(number: int, mount: Mapping[str, Any]) -> LegMount:
     """Read a leg; its number is for messages."""
-    given = dict(mount)
-    if any(name in given for name in _PLACE):
-        if "azimuth_deg" in given or "radius_m" in given:
+    values = dict(mount)
+    if any(name in values for name in _PLACE):
+        if "azimuth_deg" in values or "radius_m" in values:
             raise InvalidInput(
                 f"robot.legs: leg {number} has azimuth_deg and radius_m, or x_m and y_m, not both"
             )
-        x, y = (_limited(f"legs.{name}", given.pop(name, None), _COORDINATE) for name in _PLACE)
-        given |= {"azimuth_deg": math.degrees(math.atan2(y, x)), "radius_m": math.hypot(x, y)}
-    given.setdefault("azimuth_deg", None)
+        x, y = (_limited(f"legs.{name}", values.pop(name, None), _COORDINATE) for name in _PLACE)
+        values |= {"azimuth_deg": math.degrees(math.atan2(y, x)), "radius_m": math.hypot(x, y)}
+    values.setdefault("azimuth_deg", None)
     return LegMount(
-        **{name: _limited(f"legs.{name}", part, LEG_RANGES[name]) for name, part in given.items()}
+        **{
+            name: _limited(f"legs.{name}", value, LEG_RANGES[name])
+            for name, value in values.items()
+        }
     )
 
 

@@ -120,8 +120,8 @@ def forget(robot_ids: Collection[str]) -> None:
     """Drop documents from memory, and what is known beside them."""
     with _lock:
         for robot_id in list(robot_ids):
-            for kept in (_added, _read, _about):
-                kept.pop(robot_id, None)
+            for documents in (_added, _read, _about):
+                documents.pop(robot_id, None)
 
 
 def use_folder(folder: Path) -> None:
@@ -198,8 +198,8 @@ def _paths(robot_id: str) -> Iterator[Path]:
 
 def _not_here(robot_id: str, name: str | None) -> str:
     named = "" if name is None else f" ({name[:100]})"
-    others = sorted(f"{one.name} ({key})" for key, one in _about.items())[:10]
-    here = f"stored here: {', '.join(others)}" if others else "no robot is stored here"
+    stored = sorted(f"{about_robot.name} ({key})" for key, about_robot in _about.items())[:10]
+    here = f"stored here: {', '.join(stored)}" if stored else "no robot is stored here"
     return (
         f"there is no stored robot {str(robot_id)[:40]!r}{named}; import its document or an "
         "archive of a run with it: `hexapods robots import FILE`, POST /api/v1/robots, or "

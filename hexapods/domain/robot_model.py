@@ -265,7 +265,7 @@ class RobotModel(Record):
 def _content(value: Any) -> Any:
     """Return a model in tuples; whole numbers are floats, as they are when a file is read."""
     if isinstance(value, Record):
-        return tuple(_content(part) for name, part in vars(value).items() if name != "digest")
+        return tuple(_content(item) for name, item in vars(value).items() if name != "digest")
     if isinstance(value, tuple):
         return tuple(map(_content, value))
     return float(value) if isinstance(value, int | float) else value
@@ -314,7 +314,7 @@ def _problems_of_joint(joint: ModelJoint) -> Iterator[str]:
 
 
 def _are_finite(numbers: tuple[float, ...]) -> bool:
-    return all(math.isfinite(one) and abs(one) <= 1e6 for one in numbers)
+    return all(math.isfinite(number) and abs(number) <= 1e6 for number in numbers)
 
 
 def _is_unit(numbers: tuple[float, ...]) -> bool:

@@ -262,16 +262,16 @@ def declared_parameters(
 
 def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple[Parameter, Any]]:
     """Return the parameters with their annotations, those of base classes first."""
-    found: dict[str, tuple[Parameter, Any]] = {}
-    for one in _call_chain(function, method):
-        hints = _hints(one)
+    parameters: dict[str, tuple[Parameter, Any]] = {}
+    for function_ in _call_chain(function, method):
+        hints = _hints(function_)
         named = {
             name: (parameter, hints.get(name))
-            for name, parameter in inspect.signature(one).parameters.items()
+            for name, parameter in inspect.signature(function_).parameters.items()
             if parameter.kind not in _VARIADIC and name != "self"
         }
-        found = {**named, **found}
-    return found
+        parameters = {**named, **parameters}
+    return parameters
 
 
 def _call_chain(function: Callable[..., Any], method: str) -> list[Callable[..., Any]]:
@@ -292,20 +292,20 @@ def _call_chain(function: Callable[..., Any], method: str) -> list[Callable[...,
 
 def _has_rest(function: Callable[..., Any]) -> bool:
     parameters = inspect.signature(function).parameters.values()
-    return any(one.kind is Parameter.VAR_KEYWORD for one in parameters)
+    return any(parameter.kind is Parameter.VAR_KEYWORD for parameter in parameters)
 
 
 def _hints(function: Callable[..., Any]) -> Mapping[str, Any]:
     """Resolve a function's annotations; those of imports for type checkers only are left out."""
     target = function.func if isinstance(function, partial) else function
     target = target.__init__ if isinstance(target, type) else target  # type: ignore[misc]
-    found: dict[str, Any] = {}
+    hints: dict[str, Any] = {}
     for name, annotation in getattr(target, "__annotations__", {}).items():
         holder = type("Holder", (), {"__annotations__": {name: annotation}})
         with suppress(AttributeError, NameError, SyntaxError, TypeError):
             namespace = getattr(target, "__globals__", {})
-            found |= get_type_hints(holder, globalns=namespace, include_extras=True)
-    return found
+            hints |= get_type_hints(holder, globalns=namespace, include_extras=True)
+    return hints
 
 
 @cache
@@ -330,8 +330,8 @@ def declare(name: str, annotation: Any, default: Any = REQUIRED) -> DeclaredSett
 def required(setting: DeclaredSetting) -> DeclaredSetting:
     """Return an optional setting of a function as one that must be given, and not as None."""
     parts = get_args(setting.annotation) if _is_union(setting.annotation) else ()
-    own = tuple(one for one in parts if one is not NoneType) or (setting.annotation,)
-    return replace(setting, annotation=Union[own], default=REQUIRED)  # noqa: UP007
+    kinds = tuple(kind for kind in parts if kind is not NoneType) or (setting.annotation,)
+    return replace(setting, annotation=Union[kinds], default=REQUIRED)  # noqa: UP007
 
 
 class SettingValues(Mapping[str, V]):
@@ -355,16 +355,16 @@ class SettingValues(Mapping[str, V]):
         """Read and write a JSON object; its values are lists if those of the type are tuples."""
         are_lists = get_origin(next(iter(get_args(source)), None)) is tuple
 
-        def read(given: Any) -> "SettingValues[Any]":
-            if isinstance(given, SettingValues):
-                return given
-            if not isinstance(given, Mapping):
-                raise InvalidInput(f"settings are given by name, not as {given!r}"[:200])
-            for name, value in given.items():
+        def read(value_: Any) -> "SettingValues[Any]":
+            if isinstance(value_, SettingValues):
+                return value_
+            if not isinstance(value_, Mapping):
+                raise InvalidInput(f"settings are given by name, not as {value_!r}"[:200])
+            for name, value in value_.items():
                 if isinstance(value, list | tuple) != are_lists:
                     kind = "a list of values" if are_lists else "a number, text, true or false"
                     raise InvalidInput(f"{name} must be {kind}")
-            values: dict[str, Any] = {k: tuple(v) if are_lists else v for k, v in given.items()}
+            values: dict[str, Any] = {k: tuple(v) if are_lists else v for k, v in value_.items()}
             return cls(values)
 
         def write(values: "SettingValues[Any]") -> dict[str, Any]:
@@ -397,30 +397,30 @@ class SettingValues(Mapping[str, V]):
 
 
 def complete(
-    settings: Mapping[str, DeclaredSetting], given: Mapping[str, Any], owner: str
+    settings: Mapping[str, DeclaredSetting], values: Mapping[str, Any], owner: str
 ) -> SettingValues[Value]:
     """Validate given values, and add the defaults of the others.
 
     Args:
         settings: the declarations by name, which determine the order of the values.
-        given: values by name.
+        values: values by name.
         owner: name of the owner of the settings, for error messages.
 
     Raises:
         UnknownName: if a name is not one of the settings.
         InvalidInput: if a value is invalid, or a required one is missing.
     """
-    for name in given:
+    for name in values:
         if name not in settings:
             if not settings:
                 raise InvalidInput(f"{owner} has no settings, so none named {name!r}")
             raise UnknownName(f"setting of {owner}", name, settings)
     for name, setting in settings.items():
-        if name not in given and setting.default is REQUIRED:
+        if name not in values and setting.default is REQUIRED:
             raise InvalidInput(f"{owner} needs {name}, {setting.valid}")
     return SettingValues(
         {
-            name: setting.normalized(given[name]) if name in given else setting.default
+            name: setting.normalized(values[name]) if name in values else setting.default
             for name, setting in settings.items()
         }
     )
@@ -429,8 +429,8 @@ def complete(
 def _setting_of(annotation: Any) -> Setting | None:
     """Return the `Setting` in an annotation; in an optional one it is one level deeper."""
     parts = get_args(annotation) if _is_union(annotation) else (annotation,)
-    metadata = (one for part in parts for one in getattr(part, "__metadata__", ()))
-    return next((one for one in metadata if isinstance(one, Setting)), None)
+    metadata = (item for part in parts for item in getattr(part, "__metadata__", ()))
+    return next((item for item in metadata if isinstance(item, Setting)), None)
 
 
 def _is_union(annotation: Any) -> bool:
@@ -439,7 +439,7 @@ def _is_union(annotation: Any) -> bool:
 
 def _is_value(value: Any) -> bool:
     if isinstance(value, tuple):
-        return all(_is_value(one) for one in value)
+        return all(_is_value(item) for item in value)
     return isinstance(value, bool | int | str | NoneType) or (
         isinstance(value, float) and math.isfinite(value)
     )
@@ -450,8 +450,8 @@ def _kinds(annotation: Any) -> Iterator[type]:
     if origin is Annotated:
         yield from _kinds(get_args(annotation)[0])
     elif origin in (Union, UnionType):
-        for one in get_args(annotation):
-            yield from _kinds(one)
+        for argument in get_args(annotation):
+            yield from _kinds(argument)
     elif annotation in (None, *_PLAIN_TYPES):
         yield NoneType if annotation is None else annotation
     elif origin is not Literal:
@@ -462,13 +462,13 @@ def _literals(annotation: Any) -> Iterator[Any]:
     if get_origin(annotation) is Literal:
         yield from get_args(annotation)
     else:
-        for one in get_args(annotation):
-            yield from _literals(one)
+        for argument in get_args(annotation):
+            yield from _literals(argument)
 
 
 def _limits(annotation: Any) -> Iterator[Limit]:
-    for one in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
-        if isinstance(one, Limit):
-            yield one
-        elif get_origin(one) is not None:
-            yield from _limits(one)
+    for argument in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
+        if isinstance(argument, Limit):
+            yield argument
+        elif get_origin(argument) is not None:
+            yield from _limits(argument)

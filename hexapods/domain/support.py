@@ -105,9 +105,14 @@ class Support:
         are tried, then each leg alone.
         """
         count = len(self.homes_m)
-        for found in (2, 3) if count <= _MAX_LEGS_OF_THREE_GROUPS else (2,):
-            margins = [(self.least_margin_m(groups), groups) for groups in _divisions(count, found)]
-            best, groups = max(margins, key=lambda one: (round(one[0], 6), _turns(one[1])))
+        for count_of_groups in (2, 3) if count <= _MAX_LEGS_OF_THREE_GROUPS else (2,):
+            margins = [
+                (self.least_margin_m(groups), groups)
+                for groups in _divisions(count, count_of_groups)
+            ]
+            best, groups = max(
+                margins, key=lambda candidate: (round(candidate[0], 6), _turns(candidate[1]))
+            )
             if best >= STANDS_M:
                 return groups
         return tuple((leg,) for leg in range(1, count + 1))
@@ -115,23 +120,23 @@ class Support:
 
 def _turns(groups: Sequence[Group]) -> int:
     """Return how many neighbours around the body are of different groups."""
-    of_leg = [group for _, group in sorted((leg, one) for one in groups for leg in one)]
-    return sum(one is not other for one, other in pairwise([*of_leg, of_leg[0]]))
+    of_leg = [group for _, group in sorted((leg, group_) for group_ in groups for leg in group_)]
+    return sum(group is not other for group, other in pairwise([*of_leg, of_leg[0]]))
 
 
 def _divisions(legs: int, groups: int) -> Iterable[tuple[Group, ...]]:
     """Iterate over the ways to divide legs into so many groups, each with one leg or more."""
     if groups == 2:
-        others = range(2, legs + 1)
+        other_legs = range(2, legs + 1)
         for size in range(legs - 1):
-            for chosen in combinations(others, size):
-                yield (1, *chosen), tuple(leg for leg in others if leg not in chosen)
+            for chosen in combinations(other_legs, size):
+                yield (1, *chosen), tuple(leg for leg in other_legs if leg not in chosen)
         return
     for places in product(range(groups), repeat=legs - 1):
         numbered = (0, *places)
         firsts = [numbered.index(group) for group in range(groups) if group in numbered]
         if len(firsts) == groups and firsts == sorted(firsts):  # each division once
             yield tuple(
-                tuple(leg for leg, group in enumerate(numbered, start=1) if group == one)
-                for one in range(groups)
+                tuple(leg for leg, group in enumerate(numbered, start=1) if group == number)
+                for number in range(groups)
             )

@@ -56,16 +56,16 @@ def check_tags(tags: Iterable[str]) -> tuple[str, ...]:
         InvalidInput: if there are too many, one is too long, or has an invisible character.
     """
     valid = f"tags must be {TAGS}"
-    kept: dict[str, str] = {}
+    unique: dict[str, str] = {}
     for tag in tags:
         text = _checked(tag, MAX_TAG, valid)
         if TAG_SEPARATOR in text:
             raise InvalidInput(f"{valid}; one is {text!r}")
         if text:
-            kept.setdefault(text.casefold(), text)
-    if len(kept) > MAX_TAGS:
-        raise InvalidInput(f"{valid}; there are {len(kept):,}")
-    return tuple(kept.values())
+            unique.setdefault(text.casefold(), text)
+    if len(unique) > MAX_TAGS:
+        raise InvalidInput(f"{valid}; there are {len(unique):,}")
+    return tuple(unique.values())
 
 
 def check_notes(notes: str) -> str:
@@ -82,7 +82,14 @@ def check_notes(notes: str) -> str:
 def _checked(text: str, limit: int, valid: str, also_allowed: str = "") -> str:
     if len(text) > limit:
         raise InvalidInput(f"{valid}; it has {len(text):,} characters")
-    hidden = next((one for one in text if _is_invisible(one) and one not in also_allowed), None)
+    hidden = next(
+        (
+            character
+            for character in text
+            if _is_invisible(character) and character not in also_allowed
+        ),
+        None,
+    )
     if hidden is not None:
         raise InvalidInput(f"{valid}; it has U+{ord(hidden):04X}")
     return text.strip()
@@ -120,7 +127,8 @@ def visible(text: str, also_allowed: str = "") -> str:
     if text.isascii() and text.isprintable():
         return text
     return "".join(
-        _REPLACEMENT if _is_invisible(one) and one not in also_allowed else one for one in text
+        _REPLACEMENT if _is_invisible(character) and character not in also_allowed else character
+        for character in text
     )
 
 
@@ -157,9 +165,9 @@ def whole(number: int) -> str:
     return f"{number:,}".replace(",", "\u202f") if abs(number) >= _SMALLEST_GROUPED else f"{number}"
 
 
-def counted(number: int, one: str, many: str | None = None) -> str:
+def counted(number: int, noun: str, plural: str | None = None) -> str:
     """Format a count with its noun: `1 seed`, `30 seeds`."""
-    return f"{number:,} {one if number == 1 else many or one + 's'}"
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
 def metres(value: float) -> str:

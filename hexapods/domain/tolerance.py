@@ -49,15 +49,15 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
     """
     if not 0 <= share <= MAX_TOLERANCE:
         raise InvalidInput(f"tolerance must be from 0 to {MAX_TOLERANCE:g}, not {share}")
-    varied = VARIED_OF_MODELS if isinstance(robot, ModelRobot) else VARIED
-    drawn = rng.uniform(-1, 1, len(varied) + len(robot.legs)).tolist()
+    names = VARIED_OF_MODELS if isinstance(robot, ModelRobot) else VARIED
+    drawn = rng.uniform(-1, 1, len(names) + len(robot.legs)).tolist()
     if share == 0:
         return robot
     if isinstance(robot, ModelRobot):
-        by = [1 + share * deviation for deviation in drawn[: len(varied)]]
+        by = [1 + share * deviation for deviation in drawn[: len(names)]]
         turn_deg = share * _FULL_TURN_DEG / len(robot.legs)
-        return _model_as_built(robot, by, [turn_deg * off for off in drawn[len(varied) :]])
-    own: dict[str, Any] = {
+        return _model_as_built(robot, by, [turn_deg * off for off in drawn[len(names) :]])
+    varied: dict[str, Any] = {
         name: _within(getattr(robot, name) * (1 + share * deviation), RANGES[name])
         for name, deviation in zip(VARIED, drawn, strict=False)
     }
@@ -67,7 +67,7 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
         _as_built(leg, factors, share * apart_deg * off)
         for leg, off in zip(robot.legs, drawn[len(VARIED) :], strict=True)
     )
-    return replace(robot, legs=legs, **own)
+    return replace(robot, legs=legs, **varied)
 
 
 def _model_as_built(
@@ -84,9 +84,9 @@ def _model_as_built(
     links = []
     for link in turned_mounts(robot.model, off_deg).links:
         factor = legs if link.leg else torso
-        xx, yy, zz, xy, xz, yz = (factor * one for one in link.inertia)
-        own = replace(link, mass_kg=factor * link.mass_kg, inertia=(xx, yy, zz, xy, xz, yz))
-        links.append(own)
+        xx, yy, zz, xy, xz, yz = (factor * moment for moment in link.inertia)
+        varied_link = replace(link, mass_kg=factor * link.mass_kg, inertia=(xx, yy, zz, xy, xz, yz))
+        links.append(varied_link)
     return replace(
         robot,
         model=replace(robot.model, links=tuple(links)),
@@ -101,8 +101,8 @@ def _as_built(leg: LegMount, factors: Mapping[str, float], off_deg: float) -> Le
     """Return a leg whose own numbers deviate as the robot's do, mounted at another angle."""
     angles = {"azimuth_deg": leg.azimuth_deg, "yaw_deg": leg.yaw_deg}
     turned = {n: _within(at + off_deg, AZIMUTH) for n, at in angles.items() if at is not None}
-    own = {name: getattr(leg, name, None) for name in factors}
-    varied = {n: _within(v * factors[n], RANGES[n]) for n, v in own.items() if v is not None}
+    dimensions = {name: getattr(leg, name, None) for name in factors}
+    varied = {n: _within(v * factors[n], RANGES[n]) for n, v in dimensions.items() if v is not None}
     return replace(leg, **turned, **varied)
 
 

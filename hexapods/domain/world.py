@@ -14,7 +14,7 @@ from hexapods.domain.disturbance_documents import (
     SENT,
     as_mapping,
     as_text,
-    disturbance,
+    disturbance_from,
     parse_disturbance,
 )
 from hexapods.domain.disturbances import (
@@ -67,19 +67,20 @@ class World:
     disturbances: Sequence[Disturbance] = ()
 
     def __post_init__(self) -> None:
-        given: Any = self.disturbances  # as a user gave them
-        if not isinstance(given, list | tuple) or not all(
-            isinstance(d, Disturbance) for d in given
+        disturbances: Any = self.disturbances  # as a user gave them
+        if not isinstance(disturbances, list | tuple) or not all(
+            isinstance(d, Disturbance) for d in disturbances
         ):
             raise InvalidInput(
-                f"a World is made of disturbances, as World([Limp(legs=[1])]), not of {given!r}"
+                "a World is made of disturbances, as World([Limp(legs=[1])]), not of "
+                f"{disturbances!r}"
             )
-        object.__setattr__(self, "disturbances", tuple(given))
-        for number, one in enumerate(self.disturbances):
+        object.__setattr__(self, "disturbances", tuple(disturbances))
+        for number, disturbance in enumerate(self.disturbances):
             for other in self.disturbances[:number]:
-                _check_compatible(other, one)
-        for one in self.disturbances:
-            _check_possible(self, one)
+                _check_compatible(other, disturbance)
+        for disturbance in self.disturbances:
+            _check_possible(self, disturbance)
 
     def __bool__(self) -> bool:
         return bool(self.disturbances)
@@ -97,24 +98,30 @@ class World:
             raise InvalidInput(
                 f"a run has at most {MAX_IN_A_RUN} disturbances, not {len(self.disturbances)}"
             )
-        for one in self.disturbances:
-            one.check(robot)
-            if not is_simulated(one.kind, simulator):
+        for disturbance in self.disturbances:
+            disturbance.check(robot)
+            if not is_simulated(disturbance.kind, simulator):
                 raise InvalidInput(
-                    f"the kinematic simulator knows no {one.kind}, only "
+                    f"the kinematic simulator knows no {disturbance.kind}, only "
                     f"{', '.join(KINEMATIC_KINDS)}; choose the simulator mujoco"
                 )
-            if steps is not None and one.at_step >= steps:
+            if steps is not None and disturbance.at_step >= steps:
                 raise InvalidInput(
-                    f"{one.kind}: at_step must be from 0 to {steps - 1:,}, the last step of this "
-                    f"run, not {one.at_step:,}"
+                    f"{disturbance.kind}: at_step must be from 0 to {steps - 1:,}, the last step "
+                    f"of this run, not {disturbance.at_step:,}"
                 )
 
     @cached_property
     def change_steps(self) -> tuple[int, ...]:
         """The steps after the start in which conditions change, ascending."""
-        ends = {one.until_step for one in self.disturbances if one.until_step is not None}
-        begins = {one.at_step for one in self.disturbances if one.at_step > 0}
+        ends = {
+            disturbance.until_step
+            for disturbance in self.disturbances
+            if disturbance.until_step is not None
+        }
+        begins = {
+            disturbance.at_step for disturbance in self.disturbances if disturbance.at_step > 0
+        }
         return tuple(sorted(begins | ends))
 
     @cached_property
@@ -130,17 +137,17 @@ class World:
 
     def _conditions_at(self, step: int) -> "World":
         newest: dict[Key, Disturbance] = {}
-        for one in sorted(self.disturbances, key=lambda one: one.at_step):
+        for one in sorted(self.disturbances, key=lambda disturbance: disturbance.at_step):
             if not one.holds_at(step) or not one.lasts:
                 continue
             for covered in [key for key in newest if _covers(one, key)]:
                 del newest[covered]
             for key, part in one.parts().items():
                 newest[key] = replace(part, at_step=0, until_step=None)
-        lasting = [one for one in newest.values() if not one.repairs]
+        lasting = [disturbance for disturbance in newest.values() if not disturbance.repairs]
         return _conditions(lasting)
 
-    def then(self, one: Disturbance) -> "World":
+    def then(self, disturbance: Disturbance) -> "World":
         """Return the world in which something else happens, after what begins in the same step.
 
         What is of the same thing replaces that; of several pushes in a step each acts.
@@ -148,30 +155,32 @@ class World:
         Raises:
             InvalidInput: if it contradicts the others.
         """
-        kept: list[Disturbance] = []
+        earlier: list[Disturbance] = []
         for other in self.disturbances:
             parts = other.parts()
-            is_undone = other.at_step == one.at_step and one.lasts
-            rest = [p for k, p in parts.items() if not (is_undone and _covers(one, k))]
-            kept += [other] if len(rest) == len(parts) else rest
-        return World((*kept, one))
+            is_undone = other.at_step == disturbance.at_step and disturbance.lasts
+            rest = [p for k, p in parts.items() if not (is_undone and _covers(disturbance, k))]
+            earlier += [other] if len(rest) == len(parts) else rest
+        return World((*earlier, disturbance))
 
     @property
     def at_start(self) -> "World":
         """Disturbances that hold from the start, for good and as given; without pushes."""
         early = (d for d in self.disturbances if d.at_step == 0 and d.lasts)
-        return World(tuple(replace(one, until_step=None) for one in early))
+        return World(tuple(replace(disturbance, until_step=None) for disturbance in early))
 
     def later(self, steps: int) -> "World":
         """Return the world in which all of this happens so many steps later."""
         return World(
             tuple(
                 replace(
-                    one,
-                    at_step=one.at_step + steps,
-                    until_step=None if one.until_step is None else one.until_step + steps,
+                    disturbance,
+                    at_step=disturbance.at_step + steps,
+                    until_step=None
+                    if disturbance.until_step is None
+                    else disturbance.until_step + steps,
                 )
-                for one in self.disturbances
+                for disturbance in self.disturbances
             )
         )
 
@@ -179,7 +188,7 @@ class World:
         """Return the height of the highest bumps of the ground in a step [m]."""
         if not self.disturbances:
             return 0.0
-        return max((one.amplitude_m for one in self.as_of(step).all_of(Rough)), default=0.0)
+        return max((rough.amplitude_m for rough in self.as_of(step).all_of(Rough)), default=0.0)
 
     def pushes_at(self, step: int) -> tuple[Push, ...]:
         """Return the pushes at the beginning of a step."""
@@ -187,7 +196,9 @@ class World:
 
     def all_of(self, kind: type[D]) -> tuple[D, ...]:
         """Return the disturbances of a kind."""
-        return tuple(one for one in self.disturbances if isinstance(one, kind))
+        return tuple(
+            disturbance for disturbance in self.disturbances if isinstance(disturbance, kind)
+        )
 
     def one_of(self, kind: type[D]) -> D | None:
         """Return the first disturbance of a kind; None without one."""
@@ -203,11 +214,11 @@ def check_ends(disturbances: Iterable[Disturbance], steps: int) -> None:
     Raises:
         InvalidInput: if not.
     """
-    for one in disturbances:
-        if one.until_step is not None and one.until_step > steps:
+    for disturbance in disturbances:
+        if disturbance.until_step is not None and disturbance.until_step > steps:
             raise InvalidInput(
-                f"{one.kind}: until_step must be at most {steps:,}, the end of this run, not "
-                f"{one.until_step:,}; leave it out for what lasts"
+                f"{disturbance.kind}: until_step must be at most {steps:,}, the end of this run, "
+                f"not {disturbance.until_step:,}; leave it out for what lasts"
             )
 
 
@@ -217,7 +228,7 @@ def world(data: Iterable[Mapping[str, Any]] | World) -> World:
     Raises:
         UnknownName, InvalidInput: if a disturbance is not valid, or two contradict each other.
     """
-    return data if isinstance(data, World) else World(tuple(map(disturbance, data)))
+    return data if isinstance(data, World) else World(tuple(map(disturbance_from, data)))
 
 
 _LIST = {"type": "array", "items": SENT}
@@ -234,44 +245,51 @@ def _conditions(disturbances: Iterable[Disturbance]) -> World:
     return conditions
 
 
-def _covers(one: Disturbance, key: Key) -> bool:
+def _covers(disturbance: Disturbance, key: Key) -> bool:
     """Whether a disturbance replaces an earlier one of this key: of a leg all of its joints."""
-    return any(key[: len(own)] == own for own in one.parts())
+    return any(key[: len(own)] == own for own in disturbance.parts())
 
 
-def _check_compatible(one: Disturbance, other: Disturbance) -> None:
+def _check_compatible(first: Disturbance, other: Disturbance) -> None:
     """Check that two disturbances do not begin at once if they are of the same thing.
 
     Raises:
         InvalidInput: if they contradict each other.
     """
-    if one.at_step != other.at_step or not (one.lasts and other.lasts):
+    if first.at_step != other.at_step or not (first.lasts and other.lasts):
         return
-    if any(_covers(one, key) for key in other.parts()) or any(
-        _covers(other, key) for key in one.parts()
+    if any(_covers(first, key) for key in other.parts()) or any(
+        _covers(other, key) for key in first.parts()
     ):
         raise InvalidInput(
-            f"{one.kind} and {other.kind} at step {one.at_step:,} contradict each other; let one "
-            "begin later, or leave one out"
+            f"{first.kind} and {other.kind} at step {first.at_step:,} contradict each other; "
+            "let one begin later, or leave one out"
         )
 
 
-def _check_possible(world: World, one: Disturbance) -> None:
+def _check_possible(world: World, disturbance: Disturbance) -> None:
     """Check that something can happen, by what holds just before.
 
     Raises:
         InvalidInput: if it contradicts that.
     """
-    if isinstance(one, Push | Repair):
+    if isinstance(disturbance, Push | Repair):
         return
-    earlier = [d for d in world.disturbances if d.at_step <= one.at_step and d is not one]
-    for held in _held_at(earlier, one.at_step):
-        same = any(_covers(held, key) for key in one.parts())
-        is_lost = isinstance(held, Lost) and same and not isinstance(one, Lost)
-        if is_lost or _is_patch_on_bumps(one, held) or _overlap(one, held):
+    earlier = [
+        d for d in world.disturbances if d.at_step <= disturbance.at_step and d is not disturbance
+    ]
+    for held_disturbance in _held_at(earlier, disturbance.at_step):
+        same = any(_covers(held_disturbance, key) for key in disturbance.parts())
+        is_lost = isinstance(held_disturbance, Lost) and same and not isinstance(disturbance, Lost)
+        if (
+            is_lost
+            or _is_patch_on_bumps(disturbance, held_disturbance)
+            or _overlap(disturbance, held_disturbance)
+        ):
             raise InvalidInput(
-                f"{one.kind} at step {one.at_step:,} contradicts {held.kind}, which holds then; "
-                "let one end before the other begins, or leave one out"
+                f"{disturbance.kind} at step {disturbance.at_step:,} contradicts "
+                f"{held_disturbance.kind}, which holds then; let one end before the other begins, "
+                "or leave one out"
             )
 
 
@@ -282,19 +300,23 @@ def _held_at(disturbances: Iterable[Disturbance], step: int) -> tuple[Disturbanc
     return tuple(unchecked._conditions_at(step).disturbances)
 
 
-def _is_patch_on_bumps(one: Disturbance, other: Disturbance) -> bool:
+def _is_patch_on_bumps(first: Disturbance, other: Disturbance) -> bool:
     """Whether one is a patch and the other rough ground: patches lie on flat ground."""
-    rough = one if isinstance(one, Rough) else other
+    rough = first if isinstance(first, Rough) else other
     is_rough = isinstance(rough, Rough) and rough.amplitude_m > 0
-    return is_rough and (isinstance(one, Patch) or isinstance(other, Patch))
+    return is_rough and (isinstance(first, Patch) or isinstance(other, Patch))
 
 
-def _overlap(one: Disturbance, other: Disturbance) -> bool:
+def _overlap(first: Disturbance, other: Disturbance) -> bool:
     """Whether two patches lie on each other, without being the same."""
-    if not isinstance(one, Patch) or not isinstance(other, Patch) or one.parts() == other.parts():
+    if (
+        not isinstance(first, Patch)
+        or not isinstance(other, Patch)
+        or first.parts() == other.parts()
+    ):
         return False
-    places = (one.from_m, one.to_m), (other.from_m, other.to_m)
-    return places[0] != places[1] and one.from_m < other.to_m and other.from_m < one.to_m
+    places = (first.from_m, first.to_m), (other.from_m, other.to_m)
+    return places[0] != places[1] and first.from_m < other.to_m and other.from_m < first.to_m
 
 
 class NamedWorld(NamedTuple):
@@ -382,7 +404,7 @@ def parse_world(text: str) -> World:
 
 def world_text(world: World) -> str:
     """Return a world as `parse_world` reads it: `flat`, a name, or disturbances joined by +."""
-    named = (name for name, known in WORLDS.items() if known.world == world)
+    named = (name for name, named_world in WORLDS.items() if named_world.world == world)
     return next(named, "+".join(map(as_text, world.disturbances)))
 
 

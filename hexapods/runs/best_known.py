@@ -69,9 +69,9 @@ def best_known_in_race_m(race: RaceConfig) -> float | None:
 def _physical(conditions: World, robot: Robot) -> World:
     """Return the conditions without sensor noise, and without ends of earlier ones."""
     kept_on = (
-        one
-        for one in conditions.disturbances
-        if not isinstance(one, SensorNoise) and not is_nothing(one, robot)
+        disturbance
+        for disturbance in conditions.disturbances
+        if not isinstance(disturbance, SensorNoise) and not is_nothing(disturbance, robot)
     )
     return World(tuple(kept_on))
 

@@ -174,8 +174,8 @@ class WalkingProblem(Record):
     def __post_init__(self) -> None:
         if self.simulator not in SIMULATORS:
             raise UnknownName("simulator", self.simulator, SIMULATORS)
-        own = declared_fields(type(self))  # type: ignore[arg-type]  # of a class, not of an instance
-        for setting in own.values():
+        declared = declared_fields(type(self))  # type: ignore[arg-type]  # of a class, not of an instance
+        for setting in declared.values():
             setting.check(getattr(self, setting.name))
         resolve(self.gait, self.robot.azimuths_deg)
         FootGrid(self.grid_side_m, self.divisions)
@@ -188,7 +188,7 @@ class WalkingProblem(Record):
 
     def walk(self) -> "WalkingProblem":
         """Return the walking problem alone, without the fields of a training or race."""
-        names = (one.name for one in fields(WalkingProblem))
+        names = (field.name for field in fields(WalkingProblem))
         return WalkingProblem(**{name: getattr(self, name) for name in names})
 
     @property
@@ -271,14 +271,14 @@ def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
     Raises:
         UnknownName, InvalidInput: if there is no such agent, or a setting's name is reserved.
     """
-    found = registry.settings_of(registry.find(agent))
-    for name in found:
+    settings = registry.settings_of(registry.find(agent))
+    for name in settings:
         if name in RESERVED or name.startswith(("_", "model_")):
             raise InvalidInput(
                 f"agent {agent} declares a setting named {name!r}, which means something else in "
                 "commands and summaries; rename the parameter"
             )
-    return {name: one for name, one in found.items() if name not in TRAINING_FIELDS}
+    return {name: setting for name, setting in settings.items() if name not in TRAINING_FIELDS}
 
 
 def usable_agents() -> tuple[str, ...]:
@@ -300,21 +300,31 @@ def changeable_settings(agent: str) -> Mapping[str, DeclaredSetting]:
     Raises:
         UnknownName, InvalidInput: if there is no such agent.
     """
-    own = {name: one for name, one in declared_fields(TrainingConfig).items() if one.about.live}
-    return own | dict(registry.live_settings_of(registry.find(agent)))
+    live_fields = {
+        name: setting
+        for name, setting in declared_fields(TrainingConfig).items()
+        if setting.about.live
+    }
+    return live_fields | dict(registry.live_settings_of(registry.find(agent)))
 
 
-def training_config(agent: str = TrainingConfig.agent, **given: Any) -> TrainingConfig:
+def training_config(
+    agent: str = TrainingConfig.agent, **fields_and_settings: Any
+) -> TrainingConfig:
     """Create the config of a training, with its agent's settings validated and completed.
 
     Args:
         agent: a registered name or `my.module:Agent`.
-        given: fields of `TrainingConfig`, and the agent's settings by name.
+        fields_and_settings: fields of `TrainingConfig`, and the agent's settings by name.
 
     Raises:
         UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
     """
-    own = {name: value for name, value in given.items() if name in TRAINING_FIELDS}
-    settings = {name: value for name, value in given.items() if name not in TRAINING_FIELDS}
-    config = TrainingConfig(agent=agent, **own)
+    training_fields = {
+        name: value for name, value in fields_and_settings.items() if name in TRAINING_FIELDS
+    }
+    settings = {
+        name: value for name, value in fields_and_settings.items() if name not in TRAINING_FIELDS
+    }
+    config = TrainingConfig(agent=agent, **training_fields)
     return replace(config, settings=complete(agent_settings(agent), settings, agent))

@@ -41,10 +41,10 @@ def clearances_m(
     """
     feet = legs_of(robot).foot_positions(poses)
     clearance: FloatArray = feet[..., 2] - robot.foot_radii_m
-    for part, conditions in _stretches(steps, world):
-        clearance[part] -= ground_heights(conditions, feet[part, :, :2])
+    for stretch, conditions in _stretches(steps, world):
+        clearance[stretch] -= ground_heights(conditions, feet[stretch, :, :2])
         for lost in conditions.all_of(Lost):
-            clearance[part, np.array(lost.legs) - 1] = np.inf
+            clearance[stretch, np.array(lost.legs) - 1] = np.inf
     return clearance
 
 

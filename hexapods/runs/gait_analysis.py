@@ -217,7 +217,7 @@ def gait_figures(walk: RecordedWalk, from_s: float, to_s: float) -> GaitFigures 
     distance = _distance_m(walk, frames, forward, from_s, to_s)
     speed = distance / (to_s - from_s)
     is_gone = np.asarray(np.isinf(clearance).all(axis=0))
-    duties = [one.duty_factor for one, gone in zip(legs, is_gone, strict=True) if not gone]
+    duties = [leg.duty_factor for leg, gone in zip(legs, is_gone, strict=True) if not gone]
     mass = _mean_mass_kg(robot, walk.world, frames.steps)
     return GaitFigures(
         from_s=from_s,
@@ -283,15 +283,15 @@ def _frames(walk: RecordedWalk, from_s: float, to_s: float) -> _Frames | None:
         return None
     start = walk.pose_before(first)
     times, numbers = [np.array([(number + first) * step_s])], [np.array([number + first])]
-    for own, motion in enumerate(motions, start=number + first):
-        times.append(motion.time_s.astype(float) + own * step_s)
-        numbers.append(np.full(len(motion.time_s), own))
+    for step_number, motion in enumerate(motions, start=number + first):
+        times.append(motion.time_s.astype(float) + step_number * step_s)
+        numbers.append(np.full(len(motion.time_s), step_number))
     efforts = [(motion.torque_nm, motion.work_j) for motion in motions]
     torque = work = None
-    if all(one is not None and other is not None for one, other in efforts):
+    if all(torque is not None and work is not None for torque, work in efforts):
         joints = len(start) - 7
         torque = np.concatenate(
-            [np.zeros((1, joints)), *(one for one, _ in efforts if one is not None)]
+            [np.zeros((1, joints)), *(torque for torque, _ in efforts if torque is not None)]
         )
         work = np.concatenate([np.zeros(1), *(other for _, other in efforts if other is not None)])
     return _Frames(
@@ -321,9 +321,9 @@ def _mean_mass_kg(robot: Robot, world: World, steps: NDArray[np.int64]) -> float
     total = 0.0
     for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
         conditions = world.as_of(number)
-        lost = {leg for one in conditions.all_of(Lost) for leg in one.legs}
+        lost = {leg for disturbance in conditions.all_of(Lost) for leg in disturbance.legs}
         legs = math.fsum(kg for leg, kg in masses_kg.items() if leg not in lost)
-        payload = ordered_sum(one.kg for one in conditions.all_of(Payload))
+        payload = ordered_sum(payload_.kg for payload_ in conditions.all_of(Payload))
         total += count * (robot.torso_kg + legs + payload)
     return total / len(steps)
 
@@ -365,7 +365,7 @@ def _posture(times_s: FloatArray, poses: FloatArray, forward_deg: float) -> Post
     # The height that a unit vector of the body has in the world is the sine of its inclination.
     front, left = turns[:, 2, :2] @ (cos, sin), turns[:, 2, :2] @ (-sin, cos)
     height = poses[:, 2]
-    pitch, roll = (np.degrees(np.arcsin(np.clip(one, -1, 1))) for one in (front, left))
+    pitch, roll = (np.degrees(np.arcsin(np.clip(component, -1, 1))) for component in (front, left))
     every = slice(None, None, -(-len(times_s) // MAX_SAMPLES))
     return Posture(
         time_s=_rounded(times_s[every]),

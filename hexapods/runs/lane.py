@@ -80,14 +80,14 @@ LANE_FIELDS = frozenset(declared_fields(LaneConfig))
 
 
 def observation_of(
-    given: Observation | None,
+    observation: Observation | None,
     of_training: Observation | None,
     default: Observation = LaneConfig.observation,
 ) -> Observation:
     """Return the observation mode of a lane.
 
     Args:
-        given: what is asked for the lane; None if nothing is.
+        observation: what is asked for the lane; None if nothing is.
         of_training: the mode in which its agent has practised; None without a training.
         default: the mode of a lane without a training for which nothing is asked.
 
@@ -95,32 +95,38 @@ def observation_of(
         InvalidInput: if what is asked contradicts the training.
     """
     if of_training is None:
-        return default if given is None else given
-    if given not in (None, of_training):
+        return default if observation is None else observation
+    if observation not in (None, of_training):
         raise InvalidInput(
-            f"observation must be {of_training}, in which its training was learned, not {given}; "
-            "leave it out, or choose another training"
+            f"observation must be {of_training}, in which its training was learned, not "
+            f"{observation}; leave it out, or choose another training"
         )
     return of_training
 
 
-def lane_config(agent: str, *, has_training: bool = False, **given: Any) -> LaneConfig:
+def lane_config(
+    agent: str, *, has_training: bool = False, **fields_and_settings: Any
+) -> LaneConfig:
     """Create the config of a lane, with its agent's settings validated and completed.
 
     Args:
         agent: a registered name or `my.module:Agent`.
         has_training: whether the agent races with what it learned in a training.
-        given: fields of `LaneConfig`, without `keep_learning` or with None for the agent's default;
-            and the agent's settings by name.
+        fields_and_settings: fields of `LaneConfig`, without `keep_learning` or with None for the
+            agent's default; and the agent's settings by name.
 
     Raises:
         UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
     """
-    own = {name: value for name, value in given.items() if name in LANE_FIELDS}
-    settings = {name: value for name, value in given.items() if name not in LANE_FIELDS}
-    if own.get("keep_learning") is None:
-        own["keep_learning"] = registry.keeps_learning(agent)
-    lane = LaneConfig(agent=agent, **own, settings=SettingValues(settings))
+    lane_fields = {
+        name: value for name, value in fields_and_settings.items() if name in LANE_FIELDS
+    }
+    settings = {
+        name: value for name, value in fields_and_settings.items() if name not in LANE_FIELDS
+    }
+    if lane_fields.get("keep_learning") is None:
+        lane_fields["keep_learning"] = registry.keeps_learning(agent)
+    lane = LaneConfig(agent=agent, **lane_fields, settings=SettingValues(settings))
     check_lane(lane, has_training)
     if has_training:
         return lane

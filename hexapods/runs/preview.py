@@ -257,8 +257,8 @@ def _largest_sides_m(robot: Robot, gait: Gait, divisions: int) -> tuple[float | 
     sides = range(1, round(MAX_SIDE_M / _SIDE_STEP_M) + 1)
     reached = bisect_left(sides, 1, key=is_unreached)
     safe = bisect_left(sides[:reached], 1, key=is_left)
-    largest, kept = (round(n * _SIDE_STEP_M, 3) if n else None for n in (reached, safe))
-    return largest, kept
+    largest, within_limits = (round(n * _SIDE_STEP_M, 3) if n else None for n in (reached, safe))
+    return largest, within_limits
 
 
 def _better(walk: WalkingProblem, support: Support) -> BetterGroups | None:

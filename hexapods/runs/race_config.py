@@ -54,9 +54,9 @@ class Branch(Record):
         try:
             step = declared_fields(Branch)["step"].normalized(self.step)
         except InvalidInput:
-            given = repr(self.step)[:80]
+            shown = repr(self.step)[:80]
             raise InvalidInput(
-                f"there is no such step: branch_from.step must be {BRANCH_STEPS}, not {given}"
+                f"there is no such step: branch_from.step must be {BRANCH_STEPS}, not {shown}"
             ) from None
         object.__setattr__(self, "step", step)
 

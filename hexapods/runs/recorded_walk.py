@@ -127,9 +127,11 @@ def walk_of_evaluation(
     if motion is not None:
         frames = len(motion.time_s) // RACE_STEPS
         for number in range(RACE_STEPS):
-            part = slice(number * frames, (number + 1) * frames)
+            frames_of_step = slice(number * frames, (number + 1) * frames)
             begin_s = np.float32(number * problem.robot.step_s)
-            own = Motion(motion.time_s[part] - begin_s, motion.qpos[part])
-            steps.append(EvaluatedStep(number + 1, own))
+            motion_of_step = Motion(
+                motion.time_s[frames_of_step] - begin_s, motion.qpos[frames_of_step]
+            )
+            steps.append(EvaluatedStep(number + 1, motion_of_step))
     conditions = world.as_of(max(0, evaluated.step - 1))
     return RecordedWalk(recording.rest_qpos, steps, problem, conditions)

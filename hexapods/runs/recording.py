@@ -246,24 +246,26 @@ class PracticeRecording:
         Args:
             before: number of those evaluations.
         """
-        newest = max((n for n, one in enumerate(self._evaluations) if one.motion), default=-1)
-        for number, one in enumerate(self._evaluations[: min(before, newest)]):
-            if one.motion is not None:
-                self._evaluations[number] = replace(one, motion=None)
+        newest = max(
+            (n for n, evaluation in enumerate(self._evaluations) if evaluation.motion), default=-1
+        )
+        for number, evaluation in enumerate(self._evaluations[: min(before, newest)]):
+            if evaluation.motion is not None:
+                self._evaluations[number] = replace(evaluation, motion=None)
 
     def without_evaluation_motions(self) -> "PracticeRecording":
         """Return a copy that knows of its evaluations only what they reached.
 
         It takes a fraction of the memory: an evaluation has the motion of 50 steps.
         """
-        evaluations = [replace(one, motion=None) for one in self.evaluations]
+        evaluations = [replace(evaluation, motion=None) for evaluation in self.evaluations]
         return PracticeRecording(self.rest_qpos, self._first[:], self._newest.copy(), evaluations)
 
     @property
     def size(self) -> int:
         """Approximate size in memory [bytes]."""
         steps = sum(_size_of(step.motion, step.action_values) for step in self.steps)
-        return steps + sum(_size_of(one.motion) for one in self.evaluations)
+        return steps + sum(_size_of(evaluation.motion) for evaluation in self.evaluations)
 
 
 def _size_of(motion: Motion | None, action_values: ActionValues | None = None) -> int:

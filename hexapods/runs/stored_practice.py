@@ -57,8 +57,8 @@ def practice_recording(
         recording.add(step)
     # Evaluation files are written separately, and may be newer than the file of steps.
     count = int(arrays["evaluations"])
-    for one in evaluations:
-        for evaluation in _evaluations(one)[: count - len(recording.evaluations)]:
+    for file in evaluations:
+        for evaluation in _evaluations(file)[: count - len(recording.evaluations)]:
             recording.add(evaluation)
         if not is_whole:
             recording.forget_motions(count)

@@ -85,10 +85,12 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         **_next_step(learner),
         "rng": seeding.dump(learner.rng),
         "config": to_json(config),
-        "disturbances": [as_mapping(one) for one in learner.world.disturbances],
+        "disturbances": [as_mapping(disturbance) for disturbance in learner.world.disturbances],
         "fell_at_step": learner.fell_at_step,
         "newest_epsilon": learner.newest_epsilon,
-        "measured_in": [as_mapping(one) for one in learner.measured_in.disturbances],
+        "measured_in": [
+            as_mapping(disturbance) for disturbance in learner.measured_in.disturbances
+        ],
         **more,
     }
     return Checkpoint(json.loads(json.dumps(meta)), {**agent, **state})

@@ -95,13 +95,13 @@ class Learner:
                 has no more steps.
         """
         next_step = self.step + isinstance(disturbance, SensorNoise)
-        made = replace(disturbance, at_step=next_step)
-        world = self.world.then(made)
+        started = replace(disturbance, at_step=next_step)
+        world = self.world.then(started)
         world.check(config.robot, config.simulator, config.steps)
         self.walker.simulator.world = world
         if config.evaluate_every > 0 and next_step == self.step:
             self.due_epsilon = self.newest_epsilon
-        return made
+        return started
 
 
 def train(

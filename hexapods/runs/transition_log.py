@@ -92,7 +92,7 @@ class TransitionLog:
         """Number of steps."""
         return len(self._rewards)
 
-    def extend(self, part: Transitions) -> None:
+    def extend(self, steps: Transitions) -> None:
         """Append steps, but not those that it has already.
 
         Raises:
@@ -100,16 +100,16 @@ class TransitionLog:
         """
         if len(self) >= MAX_LOGGED_STEPS:
             return
-        begin, end = len(self) - part.first, MAX_LOGGED_STEPS - part.first
+        begin, end = len(self) - steps.first, MAX_LOGGED_STEPS - steps.first
         if begin < 0:
-            raise ValueError(f"these steps follow step {part.first}, not step {len(self)}")
-        self._groups = part.observed.shape[1]
+            raise ValueError(f"these steps follow step {steps.first}, not step {len(self)}")
+        self._groups = steps.observed.shape[1]
         # The observation after the last step is there; before the first step nothing is.
         rows = slice(begin + bool(self._observed), end + 1)
-        self._observed += part.observed[rows].tobytes()
-        self._measured += part.measured[rows].tobytes()
-        self._actions += part.actions[begin:end].tobytes()
-        self._rewards.frombytes(part.rewards_m[begin:end].tobytes())
+        self._observed += steps.observed[rows].tobytes()
+        self._measured += steps.measured[rows].tobytes()
+        self._actions += steps.actions[begin:end].tobytes()
+        self._rewards.frombytes(steps.rewards_m[begin:end].tobytes())
 
     def part(self, first: int, end: int) -> Transitions:
         """Return the steps from one to before another, as far as there are; a copy."""
@@ -145,9 +145,9 @@ def transitions_of(first: int, steps: Sequence[Logged]) -> Transitions:
     )
 
 
-def transition_arrays(part: Transitions) -> Arrays:
+def transition_arrays(steps: Transitions) -> Arrays:
     """Encode steps as arrays for a file."""
-    return {**part._asdict(), "first": np.array(part.first)}
+    return {**steps._asdict(), "first": np.array(steps.first)}
 
 
 def transitions(arrays: Arrays) -> Transitions:

@@ -167,9 +167,9 @@ class SimulatorExpand:
         rewards: list[FloatArray] = []
         for first in range(0, len(states), _MAX_BATCH):
             self.interrupt()
-            part = slice(first, first + _MAX_BATCH)
+            batch = slice(first, first + _MAX_BATCH)
             expansion = self._simulator.expand(
-                states[part], actions[part], as_of=self.here.state.steps
+                states[batch], actions[batch], as_of=self.here.state.steps
             )
             ends += [FutureNode(self, state) for state in expansion.states]
             rewards.append(expansion.rewards_m)

@@ -7,7 +7,7 @@ import pytest
 from hexapods.domain.disturbance_documents import (
     as_mapping,
     as_text,
-    disturbance,
+    disturbance_from,
     parse_disturbance,
 )
 from hexapods.domain.disturbances import KINDS, Disturbance, Limp, Slope, Stuck, is_nothing
@@ -40,7 +40,7 @@ def test_there_is_an_example_of_every_kind() -> None:
 def test_text_and_json_give_the_same_disturbance(text: str) -> None:
     parsed = parse_disturbance(text)
 
-    assert disturbance(as_mapping(parsed)) == parsed
+    assert disturbance_from(as_mapping(parsed)) == parsed
     assert parse_disturbance(as_text(parsed)) == parsed
     assert parsed.title
     assert parsed.help.endswith(".")
@@ -49,7 +49,7 @@ def test_text_and_json_give_the_same_disturbance(text: str) -> None:
 
 def test_fields_are_numbers_of_their_types() -> None:
     assert parse_disturbance("limp:legs=4,1:at=25") == Limp(legs=(1, 4), at_step=25)
-    slope = disturbance({"kind": "slope", "degrees": 8})
+    slope = disturbance_from({"kind": "slope", "degrees": 8})
     assert repr(slope) == repr(Slope(degrees=8.0, at_step=0, until_step=None))
 
 
@@ -132,13 +132,13 @@ def test_a_joint_is_one_of_the_robot_and_turns_within_its_limits(text: str, comp
 @pytest.mark.parametrize("legs", ["1,4", 1, [], [True], [1.5], ["1"], None])
 def test_legs_are_a_list_of_whole_numbers(legs: object) -> None:
     with pytest.raises(InvalidInput, match="list of numbers of legs"):
-        disturbance({"kind": "limp", "legs": legs})
+        disturbance_from({"kind": "limp", "legs": legs})
 
 
 @pytest.mark.parametrize("given", [{}, {"kind": None}, {"kind": ["limp"]}, {"kind": "Limp"}])
 def test_a_kind_is_needed(given: dict[str, object]) -> None:
     with pytest.raises(UnknownName, match="unknown kind of disturbance"):
-        disturbance(given)
+        disturbance_from(given)
 
 
 @pytest.mark.parametrize("one", [Limp(legs=(7,)), Stuck(leg=7, joint="coxa", angle_rad=0)])

@@ -17,7 +17,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
 from hexapods.agents.protocol import Tabular
 from hexapods.assembly import build_learner, rebuild_learner
-from hexapods.domain.disturbance_documents import disturbance
+from hexapods.domain.disturbance_documents import disturbance_from
 from hexapods.domain.disturbances import Limp, SensorNoise
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
@@ -214,8 +214,8 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
         if isinstance(record, StepTaken):
             for change in ended.changes:
                 if change["step"] == record.step and "disturbance" in change:
-                    unbroken.disturb(disturbance(change["disturbance"]), config)
-    made = [disturbance(one["disturbance"]) for one in ended.changes if "disturbance" in one]
+                    unbroken.disturb(disturbance_from(change["disturbance"]), config)
+    made = [disturbance_from(one["disturbance"]) for one in ended.changes if "disturbance" in one]
     assert made == happened == list(unbroken.world.disturbances)
     assert 0 < happened[0].at_step < happened[1].at_step < 200
     assert ended.result == training_result(unbroken, config)
