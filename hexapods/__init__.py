@@ -44,7 +44,7 @@ if not TYPE_CHECKING:  # else every name would pass for one of its names
         if name == "__all__":
             return list(public)
         if name not in public:
-            functions = ", ".join(one for one in public if one.islower())
+            functions = ", ".join(name for name in public if name.islower())
             raise AttributeError(f"hexapods has no {name!r}; its functions: {functions}")
         value = globals()[name] = public[name]
         return value

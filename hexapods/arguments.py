@@ -29,7 +29,7 @@ from hexapods.runs.recommendation import recommend
 C = TypeVar("C", bound=WalkingProblem)
 GAIT = "left-right-origin"
 """The gait where none is given: the first of the paper's."""
-WALK = tuple(one.name for one in fields(WalkingProblem))
+WALK = tuple(field.name for field in fields(WalkingProblem))
 """Names of the arguments that describe a walking problem."""
 GaitLike = str | Mapping[str, Any] | GaitSpec
 """A gait: its name, itself, or a mapping with `right_leg`, `left_leg`, and `symmetry`, `pairs` or
@@ -55,7 +55,9 @@ class NoMore(TypedDict):
     """Keyword arguments of a function that takes no others; it names the valid ones."""
 
 
-def given_of(arguments: Mapping[str, Any], names: Iterable[str], rest: str) -> dict[str, Any]:
+def given_arguments(
+    arguments: Mapping[str, Any], names: Iterable[str], rest: str
+) -> dict[str, Any]:
     """Return the arguments that a caller has given.
 
     Args:
@@ -63,8 +65,8 @@ def given_of(arguments: Mapping[str, Any], names: Iterable[str], rest: str) -> d
         names: of the arguments that count.
         rest: name of its `**` argument, whose content is added.
     """
-    given = {name: arguments[name] for name in names if arguments[name] is not NOT_GIVEN}
-    return {**given, **arguments[rest]}
+    arguments_given = {name: arguments[name] for name in names if arguments[name] is not NOT_GIVEN}
+    return {**arguments_given, **arguments[rest]}
 
 
 def agent_name(agent: str | AgentClass) -> str:
@@ -82,8 +84,8 @@ def agent_name(agent: str | AgentClass) -> str:
         return agent
     if not isinstance(agent, type):
         raise InvalidInput(f"an agent is given by its name or its class, not as {agent!r}")
-    known = (name for name, its_class in registry.registered().items() if its_class is agent)
-    name = next(known, f"{agent.__module__}:{agent.__qualname__}")
+    names = (name for name, its_class in registry.registered().items() if its_class is agent)
+    name = next(names, f"{agent.__module__}:{agent.__qualname__}")
     if "." in agent.__qualname__:
         raise InvalidInput(
             f"{agent.__qualname__} is defined inside of something else, where other processes do "
@@ -94,11 +96,11 @@ def agent_name(agent: str | AgentClass) -> str:
     return name
 
 
-def read_walk(given: Mapping[str, Any], like: WalkingProblem | None = None) -> dict[str, Any]:
+def read_walk(values: Mapping[str, Any], like: WalkingProblem | None = None) -> dict[str, Any]:
     """Return the fields of a walking problem.
 
     Args:
-        given: those that a person has given, as `hexapods.train` describes.
+        values: those that a person has given, as `hexapods.train` describes.
         like: where the others come from, except for the world and the tolerance; None for the
             defaults.
 
@@ -109,7 +111,7 @@ def read_walk(given: Mapping[str, Any], like: WalkingProblem | None = None) -> d
     if like is not None:
         inherited = [name for name in WALK if name not in ("world", "tolerance")]
         walk = {name: getattr(like, name) for name in inherited}
-    walk |= given
+    walk |= values
     walk["gait"] = read_gait(walk["gait"])
     if "robot" in walk:
         walk["robot"] = read_robot(walk["robot"])
@@ -118,17 +120,17 @@ def read_walk(given: Mapping[str, Any], like: WalkingProblem | None = None) -> d
     return walk
 
 
-def read_robot(given: RobotLike) -> Robot:
+def read_robot(value: RobotLike) -> Robot:
     """Return a robot, whose name can be shown and stored.
 
     Raises:
         UnknownName, InvalidInput: if it is none.
     """
-    if not isinstance(given, str | Mapping | Robot):
-        _refuse("robot", f"{' or '.join(PRESETS)}, a mapping or a Robot", given)
-    made = robot(given)
+    if not isinstance(value, str | Mapping | Robot):
+        _refuse("robot", f"{' or '.join(PRESETS)}, a mapping or a Robot", value)
+    parsed = robot(value)
     # No file, database or terminal takes each character that a text of Python may have.
-    named = replace(made, name=visible(made.name)[:MAX_NAME])
+    named = replace(parsed, name=visible(parsed.name)[:MAX_NAME])
     is_unstored = isinstance(named, ModelRobot) and named.id is None
     return read_document(document_of(named), named.name) if is_unstored else named
 
@@ -191,14 +193,14 @@ def recommended_agent(
     Raises:
         UnknownName, InvalidInput: if an argument is not valid.
     """
-    made = read_robot(robot)
-    gait = own_gait(made) if gait is None else read_gait(gait)
-    walk = WalkingProblem(gait=gait, robot=made, divisions=divisions)
-    return recommend(made, walk.resolved_gait, len(walk.grid)).agent
+    parsed = read_robot(robot)
+    gait = own_gait(parsed) if gait is None else read_gait(gait)
+    walk = WalkingProblem(gait=gait, robot=parsed, divisions=divisions)
+    return recommend(parsed, walk.resolved_gait, len(walk.grid)).agent
 
 
-def _refuse(name: str, valid: str, given: object) -> NoReturn:
-    raise InvalidInput(f"{name} is {valid}, not {given!r}")
+def _refuse(name: str, valid: str, value: object) -> NoReturn:
+    raise InvalidInput(f"{name} is {valid}, not {value!r}")
 
 
 def plain(value: Any) -> Any:
@@ -208,75 +210,77 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, Mapping):
-        return {name: plain(one) for name, one in value.items()}
+        return {name: plain(item) for name, item in value.items()}
     if type(value) in (list, tuple):
         return type(value)(map(plain, value))
     return value
 
 
-def values_of(given: object) -> tuple[Any, ...]:
+def values_of(value: object) -> tuple[Any, ...]:
     """Return the values of an argument of which several may be given, or one as it is."""
-    values = plain(given)
+    values = plain(value)
     if isinstance(values, Sequence) and not isinstance(values, str):
         return tuple(map(plain, values))
     return (values,)
 
 
-def check_callable(name: str, given: object) -> None:
+def check_callable(name: str, value: object) -> None:
     """Check an argument that is called back, if it is given.
 
     Raises:
         InvalidInput: if it is no function.
     """
-    if given is not None and not callable(given):
-        raise InvalidInput(f"{name} is a function that is called, not {given!r}")
+    if value is not None and not callable(value):
+        raise InvalidInput(f"{name} is a function that is called, not {value!r}")
 
 
-def read_world(given: WorldLike) -> World:
+def read_world(value: WorldLike) -> World:
     """Return a world: of a name such as `ice`, of a text or mappings, or the world itself.
 
     Raises:
         UnknownName, InvalidInput: if a disturbance is not valid, or two contradict each other.
     """
-    if isinstance(given, World):
-        return given
-    if isinstance(given, Mapping) or not isinstance(given, Iterable):
-        _refuse("world", f"one of {', '.join(WORLDS)}, a list of disturbances or a World", given)
+    if isinstance(value, World):
+        return value
+    if isinstance(value, Mapping) or not isinstance(value, Iterable):
+        _refuse("world", f"one of {', '.join(WORLDS)}, a list of disturbances or a World", value)
     return (
-        parse_world(given) if isinstance(given, str) else World(tuple(map(read_disturbance, given)))
+        parse_world(value) if isinstance(value, str) else World(tuple(map(read_disturbance, value)))
     )
 
 
-def read_disturbance(given: object) -> Disturbance:
+def read_disturbance(value: object) -> Disturbance:
     """Return a disturbance: of a text such as `limp:legs=1,4` or of a mapping, or itself.
 
     Raises:
         UnknownName, InvalidInput: if it is none.
     """
-    if isinstance(given, Disturbance):
-        return given
-    if isinstance(given, str):
-        if given in WORLDS:
-            made_of = ", ".join(f'"{as_text(one)}"' for one in WORLDS[given].world.disturbances)
-            raise InvalidInput(
-                f'{given} is a world and no disturbance: write world="{given}", or [{made_of}]'
+    if isinstance(value, Disturbance):
+        return value
+    if isinstance(value, str):
+        if value in WORLDS:
+            made_of = ", ".join(
+                f'"{as_text(disturbance)}"' for disturbance in WORLDS[value].world.disturbances
             )
-        return parse_disturbance(given)
-    if not isinstance(given, Mapping):
+            raise InvalidInput(
+                f'{value} is a world and no disturbance: write world="{value}", or [{made_of}]'
+            )
+        return parse_disturbance(value)
+    if not isinstance(value, Mapping):
         raise InvalidInput(
             f'a disturbance is such as "limp:legs=1,4" or {{"kind": "limp", "legs": [1, 4]}}, '
-            f"not {given!r}"
+            f"not {value!r}"
         )
-    return disturbance_from(given)
+    return disturbance_from(value)
 
 
-def check_names(function: str, given: Iterable[str], valid: Iterable[str]) -> None:
+def check_names(function: str, names: Iterable[str], valid: Iterable[str]) -> None:
     """Check the names of keyword arguments.
 
     Raises:
         UnknownName: for the first that is not valid; it names those that are.
     """
-    known = list(valid)
-    for name in given:
-        if name not in known:
-            raise UnknownName(f"argument of {function}", name, known)
+    valid_names = list(valid)
+    for name in names:
+        if name not in valid_names:
+            raise UnknownName(f"argument of {function}", name, valid_names)

@@ -187,8 +187,8 @@ def _agent_without_robot(
             f"{agent_name} plans with a simulator, and what it simulated was not recorded"
         )
     problem = Problem(walk.resolved_gait.groups, walk.grid.cells)
-    own = {"rng": rng, "problem": problem, "explore": explore, "observe": sensors}
-    return registry.build(agent_class, {**offered, **own})
+    arguments = {"rng": rng, "problem": problem, "explore": explore, "observe": sensors}
+    return registry.build(agent_class, {**offered, **arguments})
 
 
 def build_walkers(
@@ -246,10 +246,10 @@ def _planner(
     if lane.plans_with == "world":
         return simulator
     if lane.plans_with in (None, "start"):
-        known = replace(config, world=config.world.at_start)
+        known_config = replace(config, world=config.world.at_start)
     else:
-        known = replace(config, world=UNDISTURBED, tolerance=0.0)
-    return simulator if known == config else build_simulator(known, threads)
+        known_config = replace(config, world=UNDISTURBED, tolerance=0.0)
+    return simulator if known_config == config else build_simulator(known_config, threads)
 
 
 def sensor_noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
@@ -283,7 +283,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
     """
     if not lane.keep_learning:
         return complete(agent_settings(lane.agent), lane.settings, lane.agent)
-    walk = {one.name: getattr(config, one.name) for one in fields(WalkingProblem)}
+    walk = {field.name: getattr(config, field.name) for field in fields(WalkingProblem)}
     walk |= {"world": UNDISTURBED, "tolerance": 0.0}  # no agent is told of it
     training = TrainingConfig(
         **walk,

@@ -14,19 +14,19 @@ from hexapods.domain.errors import InvalidInput
 _DISK_FULL_ERRNOS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
-def path_of(given: object, what: str) -> Path:
+def path_of(value: object, what: str) -> Path:
     """Return a path that a user gave as text or as a `PathLike`.
 
     Args:
-        given: the path.
+        value: the path.
         what: of which it is, to begin an error message: `a table`.
 
     Raises:
         InvalidInput: if it is none, or cannot be the path of anything.
     """
-    text = os.fspath(given) if isinstance(given, str | os.PathLike) else None
+    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
     if not isinstance(text, str) or not text or "\0" in text:
-        raise InvalidInput(f"{what} is given by its path, a text or a Path, not by {given!r}")
+        raise InvalidInput(f"{what} is given by its path, a text or a Path, not by {value!r}")
     return Path(text)
 
 

@@ -52,9 +52,11 @@ def memory_bytes() -> int | None:
 def _limit(*names: str) -> list[int]:
     """Return the numbers in some files of this process's cgroup; none if it has no limit."""
     with suppress(OSError, ValueError):
-        own = Path("/proc/self/cgroup").read_text("ascii").strip().rpartition(":")[2].lstrip("/")
+        own_group = (
+            Path("/proc/self/cgroup").read_text("ascii").strip().rpartition(":")[2].lstrip("/")
+        )
         # Version 1 mounts each controller by itself, of a container at its own cgroup.
-        folder = _CGROUPS / own if (_CGROUPS / own / names[0]).exists() else _CGROUPS
+        folder = _CGROUPS / own_group if (_CGROUPS / own_group / names[0]).exists() else _CGROUPS
         texts = [(folder / name).read_text("ascii") for name in names]
         return [int(number) for text in texts for number in text.split()]
     return []

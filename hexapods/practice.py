@@ -20,7 +20,7 @@ from hexapods.arguments import (
     check_callable,
     check_names,
     check_savable,
-    given_of,
+    given_arguments,
     plain,
     read_walk,
 )
@@ -116,7 +116,7 @@ def train(
     """
     check_callable("on_record", on_record)
     path = None if checkpoint is None else path_of(checkpoint, "a checkpoint")
-    practice = _begun(agent, table, changes, given_of(locals(), FIELDS, "settings"))
+    practice = _begun(agent, table, changes, given_arguments(locals(), FIELDS, "settings"))
     return _run(practice, on_record, path)
 
 
@@ -153,16 +153,24 @@ def _begun(
     agent: str | AgentClass | None,
     table: Table | None,
     changes: Iterable[Mapping[str, Any]],
-    given: Mapping[str, Any],
+    fields_and_settings: Mapping[str, Any],
     record: bool = False,
 ) -> "Practice":
-    """Return a practice that begins; `given` has fields of the config and the agent's settings."""
+    """Return a practice that begins.
+
+    Args:
+        agent: as in `train`, and so is all but the following.
+        table: what it begins with.
+        changes: while it practises.
+        fields_and_settings: fields of the config, and the agent's settings.
+        record: see `iter_train`.
+    """
     if agent is None:
         trained = None if table is None else read_table(table)
         name = TrainingConfig.agent if trained is None else trained.config.agent
     else:
         name, trained = learned_by(agent_name(agent), table)
-    config = check_savable(_config(name, trained, given))
+    config = check_savable(_config(name, trained, fields_and_settings))
     check_ends(config.world.disturbances, config.steps)
     return Practice(config, None if trained is None else trained.table, changes, record)
 
@@ -231,7 +239,7 @@ def iter_train(
         UnknownName, InvalidInput, TableMismatch: at the call, as `train`.
         Diverged: if the physics diverges.
     """
-    return _begun(agent, table, changes, given_of(locals(), FIELDS, "settings"), record)
+    return _begun(agent, table, changes, given_arguments(locals(), FIELDS, "settings"), record)
 
 
 def evaluate(
@@ -282,14 +290,14 @@ def evaluate(
         TableMismatch: if the table is of another walking problem or agent.
         Diverged: if the physics diverges.
     """
-    given = given_of(locals(), FIELDS, "settings")
+    fields_and_settings = given_arguments(locals(), FIELDS, "settings")
     name, trained = learned_by(agent, table)
     if trained is None and needs_practice(name):
         raise InvalidInput(f"{name} walks with what it has learned: give its training")
     if trained is not None:
         like = {"steps": trained.config.steps, "tolerance": trained.config.tolerance}
-        given = {**trained.config.settings, **like, **given}
-    config = _config(name, trained, given)
+        fields_and_settings = {**trained.config.settings, **like, **fields_and_settings}
+    config = _config(name, trained, fields_and_settings)
     learner = build_learner(config)
     if trained is not None:
         check_fits(trained.table, config, config.observation)
@@ -395,12 +403,16 @@ class Practice(Iterator[TrainingRecord]):
         return f"<Practice of {config.agent}: {step:,} of {config.steps:,} steps>"
 
 
-def _config(name: str, trained: Training | None, given: Mapping[str, Any]) -> TrainingConfig:
+def _config(
+    name: str, trained: Training | None, fields_and_settings: Mapping[str, Any]
+) -> TrainingConfig:
     """Return the config of a training; what is not given is the table's, or the default."""
-    check_names("a training", given, (*FIELDS, *agent_settings(name)))
-    given = plain(given)
-    walk = {key: value for key, value in given.items() if key in WALK}
-    rest: dict[str, Any] = {key: value for key, value in given.items() if key not in WALK}
+    check_names("a training", fields_and_settings, (*FIELDS, *agent_settings(name)))
+    fields_and_settings = plain(fields_and_settings)
+    walk = {key: value for key, value in fields_and_settings.items() if key in WALK}
+    rest: dict[str, Any] = {
+        key: value for key, value in fields_and_settings.items() if key not in WALK
+    }
     like = None
     if trained is not None:
         like = trained.config

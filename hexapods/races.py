@@ -28,7 +28,7 @@ from hexapods.arguments import (
     check_callable,
     check_names,
     check_savable,
-    given_of,
+    given_arguments,
     plain,
     read_walk,
 )
@@ -182,8 +182,8 @@ class Race:
 
     def __repr__(self) -> str:
         ranking = ", ".join(
-            f"{one.agent} {self._failure(one) or metres or 'without rank'}"
-            for one, metres in (
+            f"{standing.agent} {self._failure(standing) or metres or 'without rank'}"
+            for standing, metres in (
                 (each, _metres(each.finished_distance_m)) for each in self.standings
             )
         )
@@ -198,12 +198,12 @@ class Race:
         head = ("rank", "agent", "at time-out", "total")
         rows = [
             (
-                one.rank,
-                one.agent,
-                _metres(one.finished_distance_m),
-                self._failure(one) or _metres(one.total_distance_m),
+                standing.rank,
+                standing.agent,
+                _metres(standing.finished_distance_m),
+                self._failure(standing) or _metres(standing.total_distance_m),
             )
-            for one in self.standings
+            for standing in self.standings
         ]
         cells = "".join(f"<th>{name}</th>" for name in head)
         body = "".join(
@@ -306,28 +306,33 @@ def race(
         TableMismatch: if a training is of another walking problem.
         IllegalAction: if a policy returns no legal action; what it raises itself is raised.
     """
-    given = given_of(locals(), WALK, "unknown")
-    check_names("a race", given, ("steps", "seed", *WALK))
+    walk = given_arguments(locals(), WALK, "unknown")
+    check_names("a race", walk, ("steps", "seed", *WALK))
     check_callable("on_step", on_step)
     if isinstance(lanes, str | Lane | Training | Policy) or not isinstance(lanes, Iterable):
         raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
     numbers = plain({"steps": steps, "seed": seed})
-    built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
-    like = next((one.training.config for one in built if one.training is not None), None)
+    built = [entrant if isinstance(entrant, Lane) else lane(entrant) for entrant in lanes]
+    like = next(
+        (built_lane.training.config for built_lane in built if built_lane.training is not None),
+        None,
+    )
     config = check_savable(
         RaceConfig(
-            **read_walk(plain(given), like),
-            lanes=tuple(one.config for one in built),
+            **read_walk(plain(walk), like),
+            lanes=tuple(built_lane.config for built_lane in built),
             **numbers,
         )
     )
     check_ends(config.world.disturbances, config.steps)
-    tables = [None if one.training is None else one.training.table for one in built]
+    tables = [
+        None if built_lane.training is None else built_lane.training.table for built_lane in built
+    ]
     problem = problem_of(config)
     policies = {
-        number: PolicyAgent(one.policy, problem)
-        for number, one in enumerate(built)
-        if one.policy is not None
+        number: PolicyAgent(built_lane.policy, problem)
+        for number, built_lane in enumerate(built)
+        if built_lane.policy is not None
     }
     walkers = build_walkers(config, tables, agents=policies)
     recording: Sequence[LaneRecording] = ()

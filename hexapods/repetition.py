@@ -21,7 +21,7 @@ from hexapods.arguments import (
     RobotLike,
     agent_name,
     check_callable,
-    given_of,
+    given_arguments,
     plain,
     read_robot,
     values_of,
@@ -99,12 +99,15 @@ class Experiment:
         names = setting_names(self.summary["settings"], self.summary["parameters"])
         return tuple(
             SettingResult(
-                names[one["key"]].replace("\u00a0", " "),
-                one["n"],
-                **{name: (one["total"] or {}).get(name) for name in ("iqm_m", "low_m", "high_m")},
-                failed=one["failed"],
+                names[setting["key"]].replace("\u00a0", " "),
+                setting["n"],
+                **{
+                    name: (setting["total"] or {}).get(name)
+                    for name in ("iqm_m", "low_m", "high_m")
+                },
+                failed=setting["failed"],
             )
-            for one in self.summary["settings"]
+            for setting in self.summary["settings"]
         )
 
     def table(self) -> ResultTable:
@@ -121,7 +124,7 @@ class Experiment:
     @property
     def failed(self) -> Mapping[str, str]:
         """Why each trial without a distance failed, by the trial in words."""
-        return {one["label"]: one["reason"] for one in failed_trials(self.summary["trials"])}
+        return {trial["label"]: trial["reason"] for trial in failed_trials(self.summary["trials"])}
 
     def figures(self) -> "list[Picture]":
         """Return the figures of the report, drawn by Matplotlib, with their descriptions."""
@@ -147,13 +150,13 @@ class Experiment:
     def __repr__(self) -> str:
         settings = counted(len(self.summary["settings"]), "setting")
         failures = failures_sentence(self.summary["trials"])
-        told = f"{settings}, {len(self.trials):,} trials{f', {failures}' if failures else ''}"
-        return f"<Experiment {self.config.experiment}: {told}>"
+        summary = f"{settings}, {len(self.trials):,} trials{f', {failures}' if failures else ''}"
+        return f"<Experiment {self.config.experiment}: {summary}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><th>{html.escape(one.name)}</th><td>{one.seeds}</td><td>{_interval(one)}</td></tr>"
-            for one in self.settings
+            f"<tr><th>{html.escape(result.name)}</th><td>{result.seeds}</td><td>{_interval(result)}</td></tr>"
+            for result in self.settings
         )
         head = "<tr><th></th><th>seeds</th><th>total, 95 % interval</th></tr>"
         failures = html.escape(failures_sentence(self.summary["trials"]))
@@ -221,12 +224,12 @@ def experiment(
         ClusterLost: if the processes cannot be started, or are lost.
         NotKept: if a result cannot be written to the folder.
     """
-    given = given_of(locals(), _FIELDS, "settings")
+    fields_and_settings = given_arguments(locals(), _FIELDS, "settings")
     from hexapods.experiments.summary import summarise  # noqa: PLC0415  # slow to import
 
     check_callable("on_trial", on_trial)
     check_main_module()
-    config = check_kept(experiment_config(name, _read(given)))
+    config = check_kept(experiment_config(name, _read(fields_and_settings)))
     spec = ClusterSpec(workers=workers)
     kept: AbstractContextManager[Progress] = (
         nullcontext(Progress(config))
@@ -275,13 +278,14 @@ def check_main_module() -> None:
         )
 
 
-def _read(given: Mapping[str, Any]) -> dict[str, Any]:
+def _read(fields_and_settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields of an experiment's config: lists as tuples, names in place of classes."""
-    for name, value in given.items():
+    for name, value in fields_and_settings.items():
         if value is None:
             raise InvalidInput(f"{name} must not be None; leave it out for its default")
     values = {
-        name: plain(value) if name in _SINGLE else values_of(value) for name, value in given.items()
+        name: plain(value) if name in _SINGLE else values_of(value)
+        for name, value in fields_and_settings.items()
     }
     readers = {
         "agents": agent_of_processes,
@@ -332,21 +336,21 @@ def _classes_of_program() -> set[str]:
         for node in program.body
         if not (isinstance(node, ast.If) and "__name__" in ast.unparse(node.test))
     ]
-    inner = (part for node in body for part in ast.walk(node))
-    return {part.name for part in inner if isinstance(part, ast.ClassDef)}
+    inner = (statement for node in body for statement in ast.walk(node))
+    return {statement.name for statement in inner if isinstance(statement, ast.ClassDef)}
 
 
-def _world(given: object) -> str:
-    if not isinstance(given, str):
+def _world(value: object) -> str:
+    if not isinstance(value, str):
         raise InvalidInput(
-            f'a world of an experiment is a text such as "ice" or "limp:legs=1,4", not {given!r}'
+            f'a world of an experiment is a text such as "ice" or "limp:legs=1,4", not {value!r}'
         )
-    return given
+    return value
 
 
-def _interval(one: SettingResult) -> str:
-    if one.iqm_m is None:
+def _interval(result: SettingResult) -> str:
+    if result.iqm_m is None:
         return ""
-    if one.low_m is None or one.high_m is None:
-        return f"{one.iqm_m:.3f} m"
-    return f"{one.iqm_m:.3f} m ({one.low_m:.3f} to {one.high_m:.3f})"
+    if result.low_m is None or result.high_m is None:
+        return f"{result.iqm_m:.3f} m"
+    return f"{result.iqm_m:.3f} m ({result.low_m:.3f} to {result.high_m:.3f})"

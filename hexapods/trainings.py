@@ -109,7 +109,7 @@ class Training:
         """Return the content of the `.npz` file that `save` writes."""
         meta = dict(self.table.meta)
         if self.result is not None:
-            meta |= {"curve": [list(one) for one in self.curve], "result": asdict(self.result)}
+            meta |= {"curve": [list(point) for point in self.curve], "result": asdict(self.result)}
         return to_bytes(Checkpoint(meta, self.table.arrays))
 
     def save(self, path: str | os.PathLike[str]) -> Path:

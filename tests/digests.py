@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import hexapods as hx
-from hexapods.agents.registry import OURS, learns
+from hexapods.agents.registry import BUILT_IN, learns
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot import PRESETS, Robot
 from hexapods.runs.config import SimulatorName, WalkingProblem
@@ -64,7 +64,7 @@ def results() -> Iterator[tuple[str, Callable[[], Any]]]:
     """Yield the name of each result, and what computes it."""
     yield "training", partial(_training, "q-learning", "mujoco")
     yield "race", _race
-    for agent in OURS:
+    for agent in BUILT_IN:
         yield agent, partial(_practice_and_race, agent)
     for name, robot in PRESETS.items():
         yield f"robot {name}", partial(_walk, robot)

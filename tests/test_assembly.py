@@ -14,6 +14,7 @@ from hexapods.domain.gait import GaitSpec
 from hexapods.domain.kinematic import KinematicSimulator
 from hexapods.domain.observation import OBSERVATIONS, Observation, observe
 from hexapods.domain.robot import Robot, robot
+from hexapods.domain.settings import SettingValues
 from hexapods.physics.mujoco_simulator import MujocoSimulator
 from hexapods.runs.config import WalkingProblem, training_config
 from hexapods.runs.lane import LaneConfig
@@ -135,7 +136,7 @@ def test_number_of_tables_must_equal_the_number_of_lanes(table: Checkpoint) -> N
 
 
 def test_user_supplied_agent_trains_and_races() -> None:
-    config = replace(CONFIG, agent="tests.own_agents:Restless")
+    config = replace(CONFIG, agent="tests.own_agents:Restless", settings=SettingValues({}))
     learner = build_learner(config)
     race = replace(RACE, lanes=(LaneConfig(agent="tests.own_agents:Restless"),))
     (walker,) = build_walkers(race, [None])
@@ -156,7 +157,7 @@ def test_user_supplied_look_ahead_agent_gets_a_simulator_that_counts() -> None:
 
 def test_unusable_agent_is_refused_with_the_reason() -> None:
     with pytest.raises(InvalidInput, match=r"asks for crystal_ball; on offer: .*problem.*rng"):
-        build_learner(replace(CONFIG, agent="tests.own_agents:Needy"))
+        build_learner(replace(CONFIG, agent="tests.own_agents:Needy", settings=SettingValues({})))
     with pytest.raises(UnknownName, match="unknown agent 'dijkstra'"):
         build_learner(replace(CONFIG, agent="dijkstra"))
 

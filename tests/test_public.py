@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import hexapods as hx
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.domain.disturbances import KINDS
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.runs.config import TrainingConfig
@@ -78,8 +78,8 @@ def test_an_unknown_name_is_answered_with_the_functions() -> None:
 
 
 def test_every_agent_is_there_by_its_class() -> None:
-    assert {name for name in dir(hx) if getattr(hx, name) in OURS.values()} == {
-        one.__name__ for one in OURS.values()
+    assert {name for name in dir(hx) if getattr(hx, name) in BUILT_IN.values()} == {
+        one.__name__ for one in BUILT_IN.values()
     }
 
 

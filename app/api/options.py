@@ -33,7 +33,7 @@ from app.storage.stored_robot import StoredRobot
 from hexapods import __version__
 from hexapods.agents.appearance import colors_of, description_of, title_of
 from hexapods.agents.registry import (
-    OURS,
+    BUILT_IN,
     find,
     keeps_learning,
     learns,
@@ -185,7 +185,7 @@ def _all_settings(agents: Collection[str]) -> dict[str, DeclaredSetting]:
 
 
 def _agents(names: Collection[str]) -> list[dict[str, Any]]:
-    built_in = [name for name in OURS if name in names]
+    built_in = [name for name in BUILT_IN if name in names]
     ordered = [*built_in, *(name for name in names if name not in built_in)]
     return [
         {

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from hexapods.agents.registry import OURS, registered, settings_of
+from hexapods.agents.registry import BUILT_IN, registered, settings_of
 
 _COLOR = re.compile("#[0-9A-Fa-f]{6}")
 _FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2", "#882255", "#88CCEE", "#6B4E16")
@@ -40,15 +40,15 @@ def name_of(
         title: replaces the agent's title.
     """
     parts = [title or title_of(agent)]
-    found = None if ":" in agent else OURS.get(agent) or registered().get(agent)
-    if found is not None:
-        shows_all = not getattr(found, "learns", True)
+    agent_class = None if ":" in agent else BUILT_IN.get(agent) or registered().get(agent)
+    if agent_class is not None:
+        shows_all = not getattr(agent_class, "learns", True)
         parts += [
-            one.describe(settings[name])
-            for name, one in settings_of(found).items()
-            if name in settings and (shows_all or settings[name] != one.default)
+            setting.describe(settings[name])
+            for name, setting in settings_of(agent_class).items()
+            if name in settings and (shows_all or settings[name] != setting.default)
         ]
-    if keep_learning not in (None, bool(getattr(found, "keeps_learning", False))):
+    if keep_learning not in (None, bool(getattr(agent_class, "keeps_learning", False))):
         parts.append("keeps learning" if keep_learning else "frozen")
     return ", ".join(parts)
 
@@ -58,13 +58,18 @@ def colors_of(agents: Sequence[str]) -> list[str]:
 
     An agent gets the colour of its class, or a free one if that is taken or there is none.
     """
-    own = [_attribute(agent, "color") for agent in agents]
-    others = (_attribute(agent, "color") for agent in OURS)
-    candidates = list(dict.fromkeys([*_FURTHER_COLORS, *(color for color in others if color)]))
+    own_colors = [_attribute(agent, "color") for agent in agents]
+    built_in_colors = (_attribute(agent, "color") for agent in BUILT_IN)
+    candidates = list(
+        dict.fromkeys([*_FURTHER_COLORS, *(color for color in built_in_colors if color)])
+    )
     assigned: list[str] = []
-    for color in own:
-        free = [one for one in candidates if one not in assigned]
-        spare = next((one for one in free if one not in own), (free or candidates)[0])
+    for color in own_colors:
+        free = [candidate for candidate in candidates if candidate not in assigned]
+        spare = next(
+            (candidate for candidate in free if candidate not in own_colors),
+            (free or candidates)[0],
+        )
         assigned.append(spare if color is None or color in assigned else color)
     return assigned
 
@@ -73,7 +78,7 @@ def _attribute(agent: str, name: str) -> str | None:
     """Return an attribute of a registered agent's class; `my.module:Agent` is not imported."""
     if ":" in agent:
         return None
-    found = getattr(OURS.get(agent) or registered().get(agent), name, None)
-    if not isinstance(found, str) or (name == "color" and not _COLOR.fullmatch(found)):
+    value = getattr(BUILT_IN.get(agent) or registered().get(agent), name, None)
+    if not isinstance(value, str) or (name == "color" and not _COLOR.fullmatch(value)):
         return None
-    return found
+    return value

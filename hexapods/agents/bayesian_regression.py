@@ -52,15 +52,15 @@ class BayesianRegression:
 
     def update(self, features: FloatArray, outcome: float) -> None:
         """Learn one outcome for features (d,)."""
-        kept = self._forgetting
+        share = self._forgetting
         self.set_evidence(
-            kept * self.moments + features[:, None] * features,
-            kept * self.products + features * outcome,
+            share * self.moments + features[:, None] * features,
+            share * self.products + features * outcome,
         )
 
-    def discount(self, kept: float) -> None:
+    def discount(self, share: float) -> None:
         """Forget all but a share of the evidence, so that the prior's uncertainty returns."""
-        self.set_evidence(kept * self.moments, kept * self.products)
+        self.set_evidence(share * self.moments, share * self.products)
 
     def set_evidence(self, moments: FloatArray, products: FloatArray) -> None:
         """Replace the evidence, and compute the posterior from it."""
@@ -100,5 +100,7 @@ def sum_rule(products: Mapping[int, str], count: int) -> str:
 
 def _plus(*parts: str) -> str:
     """Return the sum of some parts from the left; sums to the right are in parentheses."""
-    first, *others = [part for part in parts if part] or [""]
-    return " + ".join([first, *(f"({part})" if " + " in part else part for part in others)])
+    first, *more = [summand for summand in parts if summand] or [""]
+    return " + ".join(
+        [first, *(f"({summand})" if " + " in summand else summand for summand in more)]
+    )

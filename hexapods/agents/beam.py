@@ -68,7 +68,8 @@ class Beam(Search):
             branches = [node.legal for node in nodes]
             parents = [index for index, actions in enumerate(branches) for _ in actions]
             children, rewards = self._expand(
-                [nodes[index] for index in parents], [one for each in branches for one in each]
+                [nodes[index] for index in parents],
+                [action for each in branches for action in each],
             )
             sums = sums[parents] + rewards
             first = [
@@ -76,6 +77,6 @@ class Beam(Search):
                 for number, parent in enumerate(parents)
             ]
             self._record_futures([root[number] for number in first], sums.tolist(), step + 1)
-            kept = np.argsort(-sums, kind="stable")[: self._width].tolist()
-            nodes, sums, first = [children[i] for i in kept], sums[kept], [first[i] for i in kept]
+            best = np.argsort(-sums, kind="stable")[: self._width].tolist()
+            nodes, sums, first = [children[i] for i in best], sums[best], [first[i] for i in best]
         return root[first[0]]

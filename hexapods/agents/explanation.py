@@ -89,7 +89,9 @@ class UpdateExplanation:
             return None
         place = self.update.observation, self.update.action
         updates = [self.update, *self.others]
-        return [one.after for one in updates if (one.observation, one.action) == place][-1]
+        return [update.after for update in updates if (update.observation, update.action) == place][
+            -1
+        ]
 
 
 @dataclass(frozen=True)
@@ -122,11 +124,11 @@ class ChoiceExplanation:
     @property
     def runner_up(self) -> Action | None:
         """The action with the highest score but the chosen one; None if there is no other."""
-        others = self.scores.copy()
-        others[self.action] = np.nan
-        if np.isnan(others).all():
+        other_scores = self.scores.copy()
+        other_scores[self.action] = np.nan
+        if np.isnan(other_scores).all():
             return None
-        return Action(*map(int, np.unravel_index(np.nanargmax(others), others.shape)))
+        return Action(*map(int, np.unravel_index(np.nanargmax(other_scores), other_scores.shape)))
 
     @property
     def margin(self) -> float | None:

@@ -193,8 +193,12 @@ class CycleBandit:
             if array.shape != (size,) or array.dtype.kind != "f" or np.isinf(array).any():
                 raise ValueError(f"its cycle_{name} are no {size} numbers")
         counts = arrays["cycle_counts"]
-        others = *arrays["cycle_tried"].tolist(), *arrays["cycle_judged"].tolist(), *counts.tolist()
-        if np.isnan(others).any() or (counts < 0).any() or (counts != counts.round()).any():
+        numbers = (
+            *arrays["cycle_tried"].tolist(),
+            *arrays["cycle_judged"].tolist(),
+            *counts.tolist(),
+        )
+        if np.isnan(numbers).any() or (counts < 0).any() or (counts != counts.round()).any():
             raise ValueError("its cycle_counts are no whole numbers")
         if counts[0] >= policies or counts.max() > _MOST:
             raise ValueError("its cycle_counts are out of range")

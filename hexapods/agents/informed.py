@@ -59,10 +59,10 @@ class Informed(Search):
         firsts: list[Action] = []
         for step, share in enumerate(self._shares, 1):
             layer = self._simulate(self._candidates(layer)[:share])
-            firsts = [one.first for one in layer if one.first is not None]
-            self._record_futures(firsts, [one.sum_m for one in layer], step)
-        after = self._model.best_rewards(np.array([one.node.offsets_m for one in layer]))
-        values = [one.sum_m for one in layer] + after
+            firsts = [sequence.first for sequence in layer if sequence.first is not None]
+            self._record_futures(firsts, [sequence.sum_m for sequence in layer], step)
+        after = self._model.best_rewards(np.array([sequence.node.offsets_m for sequence in layer]))
+        values = [sequence.sum_m for sequence in layer] + after
         self._record_futures(firsts, values.tolist(), len(self._shares) + 1)
         return firsts[int(values.argmax())]
 
@@ -78,19 +78,24 @@ class Informed(Search):
             for index, value in zip(some, values, strict=True):
                 action = sequence.node.legal[index]
                 candidates.append(_Candidate(float(value), sequence, action, offsets_m))
-        return sorted(candidates, key=lambda one: -one.value_m)
+        return sorted(candidates, key=lambda candidate: -candidate.value_m)
 
     def _simulate(self, candidates: Sequence["_Candidate"]) -> list["_Sequence"]:
         """Simulate the steps, learn from their rewards, and return the longer sequences."""
         nodes, rewards = self._expand(
-            [one.sequence.node for one in candidates], [one.action for one in candidates]
+            [candidate.sequence.node for candidate in candidates],
+            [candidate.action for candidate in candidates],
         )
-        offsets_m = np.array([one.offsets_m for one in candidates])
-        self._model.learn(offsets_m, np.array([one.action for one in candidates]), rewards)
+        offsets_m = np.array([candidate.offsets_m for candidate in candidates])
+        self._model.learn(
+            offsets_m, np.array([candidate.action for candidate in candidates]), rewards
+        )
         longer = []
-        for one, node, reward in zip(candidates, nodes, rewards.tolist(), strict=True):
-            first = one.action if one.sequence.first is None else one.sequence.first
-            longer.append(_Sequence(node, one.sequence.sum_m + reward, first))
+        for candidate, node, reward in zip(candidates, nodes, rewards.tolist(), strict=True):
+            first = (
+                candidate.action if candidate.sequence.first is None else candidate.sequence.first
+            )
+            longer.append(_Sequence(node, candidate.sequence.sum_m + reward, first))
         return longer
 
 
@@ -215,7 +220,7 @@ class RewardModel:
         stance = np.zeros((count, self._groups, self._groups, 2))
         stance[rows, group] = landed_m / self._unit_m
         parts = (np.ones(count), lands, cells, comes_from, stance)
-        return np.concatenate([part.reshape(count, -1) for part in parts], axis=1)
+        return np.concatenate([columns.reshape(count, -1) for columns in parts], axis=1)
 
     def _nearest(self, offsets_m: FloatArray) -> IntArray:
         """Return the cell nearest to each offset, (…, 2)."""

@@ -119,10 +119,10 @@ class LandingTable(ValueTable):
 
     def dump(self) -> dict[str, NDArray[Any]]:
         """Return the landings that were visited or have a value, ascending, and the shape."""
-        (part,) = self._parts()
+        (columns,) = self._parts()
         return {
             "shape": np.array([self.groups, self.cells]),
-            **dict(zip(LANDING_ARRAYS, part, strict=True)),
+            **dict(zip(LANDING_ARRAYS, columns, strict=True)),
         }
 
     def load(self, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -169,8 +169,8 @@ class LandingRows:
 
     def _stored(self) -> Iterator[tuple[int, float, int]]:
         before = -1
-        for part in self._parts():
-            for row in zip(*(array.tolist() for array in part), strict=True):
+        for columns in self._parts():
+            for row in zip(*(array.tolist() for array in columns), strict=True):
                 if row[0] <= before:
                     raise TableMismatch(NOT_RISING)
                 before = row[0]

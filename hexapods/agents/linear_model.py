@@ -327,10 +327,10 @@ class LinearModel:
         Raises:
             ValueError: if it is of another number of groups or cells.
         """
-        own = self.state()
-        if not own.keys() <= state.keys():
+        present = self.state()
+        if not present.keys() <= state.keys():
             raise ValueError("it was learned with another order of the groups")
-        for name, array in own.items():
+        for name, array in present.items():
             if state[name].shape != array.shape:
                 raise ValueError(f"{name} has the shape {state[name].shape}, not {array.shape}")
         for expert in self._experts:

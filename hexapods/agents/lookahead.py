@@ -60,10 +60,10 @@ class LookAhead(Search):
         legal = self._expand.here.legal
         rewards, sums = self._sums([self._expand.here], self._depth)
         sequences = len(legal) ** (self._depth - 1)
-        found = zip(legal, rewards.tolist(), sums.tolist(), strict=True)
+        findings = zip(legal, rewards.tolist(), sums.tolist(), strict=True)
         self._futures = {
             action: Future(action, reward, best, sequences, self._depth)
-            for action, reward, best in found
+            for action, reward, best in findings
         }
         return legal[int(sums.argmax())]
 

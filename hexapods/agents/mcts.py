@@ -74,13 +74,15 @@ class Mcts(Search):
             for action, child in root.children.items()
             if child.visits
         }
-        return max(root.children, key=lambda one: _rank(root.children[one]))
+        return max(root.children, key=lambda action: _rank(root.children[action]))
 
     def _simulate(self, root: _TreeNode) -> None:
         """Simulate one sequence of steps, and add its return to all nodes on its way."""
         path, tree_node, is_known = [root], root, True
         while len(path) <= self._horizon:
-            untried = [one for one in tree_node.node.legal if one not in tree_node.children]
+            untried = [
+                action for action in tree_node.node.legal if action not in tree_node.children
+            ]
             if untried and is_known:
                 is_known = False
                 action = self._random(untried)
@@ -95,11 +97,11 @@ class Mcts(Search):
             tree_node = tree_node.children[action]
             path.append(tree_node)
         stretch = self._horizon / (len(path) - 1)  # over 1 if the budget cut it short
-        total_m = stretch * ordered_sum(one.reward_m for one in path)
+        total_m = stretch * ordered_sum(tree_node_.reward_m for tree_node_ in path)
         self._lowest, self._highest = min(self._lowest, total_m), max(self._highest, total_m)
-        for one in path:
-            one.visits += 1
-            one.total_m += total_m
+        for visited in path:
+            visited.visits += 1
+            visited.total_m += total_m
 
     def _step(self, tree_node: _TreeNode, action: Action) -> _TreeNode:
         (node,), (reward_m,) = self._expand([tree_node.node], [action])

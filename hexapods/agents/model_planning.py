@@ -75,10 +75,10 @@ class ModelArrays:
         self.tries = np.array([pair.tries for pair in pairs], np.int64)
         self.rewards_m = np.array([pair.mean_reward_m for pair in pairs], float)
         # NumPy takes counts of its index type alone, which has 32 bits on some machines.
-        ways = np.array([len(one) for one in outcomes], np.intp)
+        ways = np.array([len(successors) for successors in outcomes], np.intp)
         self.outcome_pairs = np.repeat(np.arange(len(pairs)), ways)
         self.outcome_places = np.searchsorted(self.states, after)
-        counts = chain.from_iterable(one.values() for one in outcomes)
+        counts = chain.from_iterable(successors.values() for successors in outcomes)
         self.outcome_counts = np.fromiter(counts, np.int64)
         tried = np.bincount(self.places, minlength=len(self.states))
         self.untried = groups * (cells - 1) - tried
@@ -118,14 +118,14 @@ class ModelArrays:
         for _ in range(MAX_SWEEPS):
             weights = shares * states[self.outcome_places]
             later = np.bincount(self.outcome_pairs, weights, pairs).astype(np.float64)
-            others = untried_m
+            untried_values = untried_m
             if uniform is not None:
                 mean = _mean(states, unseen, uniform.states)
                 later = later + uniform.probabilities * mean
-                others = untried_m + gamma * mean
+                untried_values = untried_m + gamma * mean
                 unseen = uniform.unseen_reward_m + gamma * mean
             values = rewards_m + gamma * later
-            before, states = states, self.best_of_states(values, others)
+            before, states = states, self.best_of_states(values, untried_values)
             if np.abs(states - before).max(initial=0.0) <= TOLERANCE_M:
                 break
         return ValueIterationResult(values, mean, later)

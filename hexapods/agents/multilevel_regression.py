@@ -99,8 +99,8 @@ class _Evidence(NamedTuple):
 
     def less(self, variance: float) -> "_Evidence":
         """Return the evidence of the coarser level, from which this one differs by chance [m²]."""
-        kept = 1 / (1 + variance * self.precision)
-        return _Evidence(kept * self.precision, kept * self.weighted)
+        share = 1 / (1 + variance * self.precision)
+        return _Evidence(share * self.precision, share * self.weighted)
 
     def summed(self, members: IntArray, count: int) -> "_Evidence":
         """Return the evidence of a coarser level of `count` members, by the member of each."""
@@ -111,9 +111,9 @@ class _Evidence(NamedTuple):
     def corrected(self, name: str, coarser: Level, members: IntArray, variance: float) -> Level:
         """Return the posterior of this level, which corrects a coarser one (partial pooling)."""
         mean, deviation = coarser.mean[members], coarser.deviation[members]
-        kept = 1 / (1 + variance * self.precision)
-        pooled = kept * mean + kept * variance * self.weighted
-        return Level(name, pooled, np.sqrt((kept * deviation) ** 2 + kept * variance))
+        share = 1 / (1 + variance * self.precision)
+        pooled = share * mean + share * variance * self.weighted
+        return Level(name, pooled, np.sqrt((share * deviation) ** 2 + share * variance))
 
 
 class MultilevelRegression:
@@ -160,8 +160,8 @@ class MultilevelRegression:
         """Return the linear model's rewards of all landings, fitted to the evidence of each."""
         count = self._features.shape[1]
         pairs = [
-            (one[:, None] * count + other[:, None]).ravel()
-            for one in self._columns.T
+            (column[:, None] * count + other[:, None]).ravel()
+            for column in self._columns.T
             for other in self._columns.T
         ]
         moments = np.zeros(count * count)

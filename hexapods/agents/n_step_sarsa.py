@@ -99,8 +99,8 @@ class NStepSarsa(TabularLearner):
         """Return the state of `TabularLearner`, and the steps that are not judged yet."""
         places = [(state, column) for state, column, _ in self._waiting]
         rewards = [reward for *_, reward in self._waiting]
-        own = {"places": np.array(places, np.int64).reshape(-1, 2), "rewards": np.array(rewards)}
-        return super().state() | own
+        arrays = {"places": np.array(places, np.int64).reshape(-1, 2), "rewards": np.array(rewards)}
+        return super().state() | arrays
 
     def load(self, state: AgentState) -> None:
         """Restore a state that `state` returned; the caller restores the generator."""

@@ -77,7 +77,9 @@ class PlanningLearner(TabularLearner):
 
 def planning_summary(planned: Sequence[ValueUpdate]) -> str:
     """Return in a sentence how many values were changed by planning."""
-    changed = {(one.observation, one.action) for one in planned if one.before != one.after}
+    changed = {
+        (update.observation, update.action) for update in planned if update.before != update.after
+    }
     updates, values = len(planned), len(changed)
     return (
         f"Then it went over {updates} remembered step{'s' * (updates != 1)}, which changed "

@@ -101,14 +101,14 @@ class PrioritizedSweeping(PlanningLearner):
     ) -> UpdateExplanation:
         """Return the explanation of the first update of this step's value, if it was due."""
         entry = transition.observation, transition.action
-        own = [one for one in updates if (one.observation, one.action) == entry]
-        others = [one for one in updates if not own or one is not own[0]]
-        if own:
-            summary = summary_of(own[0])
+        of_entry = [update for update in updates if (update.observation, update.action) == entry]
+        others = [update for update in updates if not of_entry or update is not of_entry[0]]
+        if of_entry:
+            summary = summary_of(of_entry[0])
         else:
             summary = "Its own value was not worked on: others would change more, or it hardly."
         planned = planning_summary(updates)
-        return UpdateExplanation(f"{summary} {planned}", own[0] if own else None, others)
+        return UpdateExplanation(f"{summary} {planned}", of_entry[0] if of_entry else None, others)
 
     def _enqueue(self, number: int) -> None:
         """Set the priority of a pair; it leaves the queue if its value would hardly change."""

@@ -111,9 +111,9 @@ class QTable(ValueTable):
         """Return the entries that were visited or have a value, sparse (see `table_rows`)."""
         size, begin = sum(len(where) for where, _, _ in self._parts()), 0
         where, q, n = np.empty(size, np.int64), np.empty(size), np.empty(size, np.uint32)
-        for part in self._parts():
-            end = begin + len(part[0])
-            where[begin:end], q[begin:end], n[begin:end] = part
+        for columns in self._parts():
+            end = begin + len(columns[0])
+            where[begin:end], q[begin:end], n[begin:end] = columns
             begin = end
         return {"shape": np.array([self.groups, self.cells]), "where": where, "q": q, "n": n}
 
@@ -145,10 +145,10 @@ class QTable(ValueTable):
         where, q, n = (arrays[name] for name in ("where", "q", "n"))
         self._clear()
         for first in range(0, len(where), _VALUES_AT_ONCE):
-            part = slice(first, first + _VALUES_AT_ONCE)
-            states, columns = np.divmod(where[part].astype(np.int64), self.actions)
+            rows = slice(first, first + _VALUES_AT_ONCE)
+            states, columns = np.divmod(where[rows].astype(np.int64), self.actions)
             slots = self._slots_of(states)
-            self._q[slots, columns], self._n[slots, columns] = q[part], n[part]
+            self._q[slots, columns], self._n[slots, columns] = q[rows], n[rows]
 
     def _slots_of(self, states: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the rows of some states in the arrays; allocate those that are missing."""

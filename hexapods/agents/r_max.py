@@ -144,9 +144,9 @@ class RMax(ModelAgent):
     def _optimistic_plan(self) -> "_OptimisticPlan":
         """Return the plan for the case that all that is unknown is the best."""
         arrays, highest = self._arrays(), self._highest_value
-        known = arrays.tries >= self._known_after
-        rewards = np.where(known, np.minimum(arrays.rewards_m, self._max_reward_m), highest)
-        counts = known[arrays.outcome_pairs] * arrays.outcome_counts
+        is_known = arrays.tries >= self._known_after
+        rewards = np.where(is_known, np.minimum(arrays.rewards_m, self._max_reward_m), highest)
+        counts = is_known[arrays.outcome_pairs] * arrays.outcome_counts
         shares = counts / arrays.tries[arrays.outcome_pairs]
         untried = np.where(arrays.untried > 0, highest, -np.inf)
         plan = arrays.solve(rewards, shares, untried, self._gamma)

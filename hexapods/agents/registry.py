@@ -47,7 +47,7 @@ _log = logging.getLogger(__name__)
 ENTRY_POINT_GROUP = "hexapods.agents"
 AgentClass = Callable[..., Agent]
 
-OURS: Mapping[str, AgentClass] = {
+BUILT_IN: Mapping[str, AgentClass] = {
     "q-learning": QLearning,
     "double-q": DoubleQ,
     "q-lambda": QLambda,
@@ -83,14 +83,14 @@ def registered() -> Mapping[str, AgentClass]:
     A package cannot replace a built-in agent. One that cannot be loaded is left out, with a
     warning in the log. Cached, because loading entry points takes milliseconds and more.
     """
-    found = dict(OURS)
+    classes = dict(BUILT_IN)
     for point in entry_points(group=ENTRY_POINT_GROUP):
-        if point.name not in OURS:
+        if point.name not in BUILT_IN:
             try:
-                found[point.name] = point.load()
+                classes[point.name] = point.load()
             except Exception as error:
                 _log.warning("agent %s cannot be loaded: %s", point.name, error)
-    return found
+    return classes
 
 
 def find(name: str) -> AgentClass:
@@ -101,8 +101,8 @@ def find(name: str) -> AgentClass:
         InvalidInput: if the module cannot be imported, has no such class, or the class does not
             implement the agent protocol.
     """
-    if name in OURS:  # first, so that no package is loaded for a built-in agent
-        return OURS[name]
+    if name in BUILT_IN:  # first, so that no package is loaded for a built-in agent
+        return BUILT_IN[name]
     by_name = registered()
     if name in by_name:
         return by_name[name]
@@ -169,8 +169,8 @@ def searches(name: str) -> bool:
 
 def compares(name: str) -> str:
     """Return what a search compares, as its class says in `compares`; no agent is imported."""
-    found = None if ":" in name else OURS.get(name) or registered().get(name)
-    return str(getattr(found, "compares", "return of its simulated sequences"))
+    agent_class = None if ":" in name else BUILT_IN.get(name) or registered().get(name)
+    return str(getattr(agent_class, "compares", "return of its simulated sequences"))
 
 
 def keeps_learning(name: str) -> bool:
@@ -226,14 +226,14 @@ def live_settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
     """
     if not isinstance(agent, type) or not hasattr(agent, "tune"):
         return {}
-    accepted, own = parameters_of(agent, "tune"), settings_of(agent)
+    accepted, constructor_settings = parameters_of(agent, "tune"), settings_of(agent)
     declared = {**declared_parameters(TabularLearner, "tune"), **declared_parameters(agent, "tune")}
     live = {
         name: setting
-        for name, setting in own.items()
+        for name, setting in constructor_settings.items()
         if name in accepted or (setting.about.live and takes_any(agent, "tune"))
     }
-    replacing = [name for name in accepted if name not in own and name in declared]
+    replacing = [name for name in accepted if name not in constructor_settings and name in declared]
     return live | {name: required(declared[name]) for name in replacing}
 
 

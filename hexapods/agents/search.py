@@ -74,8 +74,8 @@ class Search:
         for first, sum_m in zip(firsts, sums_m, strict=True):
             best[first] = max(sum_m, best.get(first, sum_m))
         for first, sum_m in best.items():
-            known = self._futures.get(first)
-            reward_m = sum_m if known is None else known.reward_m
+            future = self._futures.get(first)
+            reward_m = sum_m if future is None else future.reward_m
             self._futures[first] = Future(first, reward_m, sum_m, counts[first], steps)
 
     def learn(self, transition: Transition) -> None:

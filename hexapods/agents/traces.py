@@ -55,7 +55,7 @@ class TraceLearner(TabularLearner):
         self._traces.pop(newest, None)
         self._traces[newest] = 1.0
         discount = 1.0 if self._is_average else self._gamma
-        decay, kept = discount * self._trace_decay, {}
+        decay, traces = discount * self._trace_decay, {}
         for place, trace in self._traces.items():
             before = self.table.value(*place)
             after = before + self._alpha * error * trace
@@ -69,8 +69,8 @@ class TraceLearner(TabularLearner):
                 self._explain(place, explained, after)
             self.table.set_value(*place, after)
             if trace * decay >= _MIN_TRACE:
-                kept[place] = trace * decay
-        self._traces = kept
+                traces[place] = trace * decay
+        self._traces = traces
         self._learn_average(error)
 
     def _explanation(
@@ -95,8 +95,8 @@ class TraceLearner(TabularLearner):
         """Return the state of `TabularLearner`, λ and the eligibility traces."""
         places = np.array(list(self._traces), np.int64).reshape(-1, 2)
         traces = np.array(list(self._traces.values()))
-        own = {"trace_decay": np.array([self._trace_decay]), "places": places, "traces": traces}
-        return super().state() | own
+        arrays = {"trace_decay": np.array([self._trace_decay]), "places": places, "traces": traces}
+        return super().state() | arrays
 
     def load(self, state: AgentState) -> None:
         """Restore a state that `state` returned; the caller restores the generator."""

@@ -56,7 +56,9 @@ def apply_conditions(
     """
     # All geoms are there before their friction is set, and a jammed servo has its power back last.
     later = (Friction, Stuck)
-    for one in sorted(conditions.disturbances, key=lambda one: isinstance(one, later)):
+    for one in sorted(
+        conditions.disturbances, key=lambda disturbance: isinstance(disturbance, later)
+    ):
         _apply(one, _Target(spec, robot, forward_deg))
     patches = sorted(conditions.all_of(Patch), key=lambda patch: patch.from_m)
     if patches:
@@ -72,7 +74,7 @@ class _Target(NamedTuple):
 
 
 @singledispatch
-def _apply(one: Disturbance, target: _Target) -> None:
+def _apply(disturbance: Disturbance, target: _Target) -> None:
     """Change the specification; those that are no part of a model change nothing."""
 
 

@@ -33,6 +33,6 @@ def mismatch() -> str | None:
 
 def warn_of_mismatch() -> None:
     """Warn, where the engine is not the pinned one."""
-    told = mismatch()
-    if told is not None:
-        warnings.warn(told, RuntimeWarning, stacklevel=2)
+    warning = mismatch()
+    if warning is not None:
+        warnings.warn(warning, RuntimeWarning, stacklevel=2)

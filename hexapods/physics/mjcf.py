@@ -88,7 +88,7 @@ def is_painted(robot: Robot, geom_name: str) -> bool:
     """Return whether a visual geom is painted in the agent's colour; of files' robots the torso."""
     if isinstance(robot, ModelRobot):
         return geom_name.startswith("torso")
-    return not any(part in geom_name for part in _UNPAINTED)
+    return not any(unpainted in geom_name for unpainted in _UNPAINTED)
 
 
 def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
@@ -113,24 +113,24 @@ def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
 def _leg_spec(robot: Robot, number: int) -> mujoco.MjSpec:
     """Build a leg, counted from 1, with its lengths, masses, servos and friction."""
 
-    def own(name: str) -> float:
+    def dimension(name: str) -> float:
         return robot.of_legs(name)[number - 1]
 
     spec = mujoco.MjSpec.from_file(str(models_dir() / "leg.xml"))
     ends = {"coxa": "femur", "femur": "tibia", "tibia": "foot"}
     for link, end_name in ends.items():
-        length = own(f"{link}_m")
+        length = dimension(f"{link}_m")
         end = spec.body(end_name)
         _stretch(spec.body(link), length / end.pos[0])
         end.pos = [length, 0, 0]
-        spec.geom(link).mass = own(f"{link}_kg")
+        spec.geom(link).mass = dimension(f"{link}_kg")
         _set_friction(spec.geom(link), robot)
         joint, servo = spec.joint(link), spec.actuator(link)
         joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
         joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
         set_servo(servo, robot.servo_of(number, link))
     foot = spec.geom("foot")
-    foot.mass, foot.size = own("foot_kg"), [robot.foot_radius_m, 0, 0]
+    foot.mass, foot.size = dimension("foot_kg"), [robot.foot_radius_m, 0, 0]
     _set_friction(foot, robot)
     return spec
 

@@ -45,8 +45,8 @@ def model_spec(robot: ModelRobot, spec: mujoco.MjSpec) -> mujoco.MjSpec:
         if link.parent < 0:
             name = "torso"
         else:
-            part = f"part{next(numbers)}" if link.joint is None else link.joint.name
-            name = f"leg{link.leg}_{part}" if link.leg else f"torso_{part}"
+            label = f"part{next(numbers)}" if link.joint is None else link.joint.name
+            name = f"leg{link.leg}_{label}" if link.leg else f"torso_{label}"
             bodies.append(bodies[link.parent].add_body(name=name, pos=link.at_m, quat=link.wxyz))
         _add_link(spec, robot, bodies[-1], name, link)
         if link.mesh is not None:
@@ -128,7 +128,7 @@ def _principal(inertia: tuple[float, ...]) -> tuple[list[float], list[float]]:
 
 
 def _add_joint(body: mujoco.MjsBody, name: str, joint: ModelJoint) -> None:
-    made = body.add_joint(
+    added = body.add_joint(
         name=name,
         type=mujoco.mjtJoint.mjJNT_HINGE,
         axis=joint.axis,
@@ -137,7 +137,7 @@ def _add_joint(body: mujoco.MjsBody, name: str, joint: ModelJoint) -> None:
         limited=True,
         armature=joint.armature,
     )
-    made.damping = np.array([joint.damping, 0, 0])[: np.size(made.damping)]
+    added.damping = np.array([joint.damping, 0, 0])[: np.size(added.damping)]
 
 
 def _add_geom(
@@ -167,6 +167,6 @@ def _size(geom: ModelGeom) -> Vector:
     """Return the size as MuJoCo takes it: a part that the kind needs is not 0."""
     needed = {"sphere": 1, "capsule": 2, "cylinder": 2}.get(geom.kind, 3)
     first, second, third = (
-        max(part, 1e-4) if number < needed else 0.0 for number, part in enumerate(geom.size_m)
+        max(half_m, 1e-4) if number < needed else 0.0 for number, half_m in enumerate(geom.size_m)
     )
     return first, second, third

@@ -203,8 +203,8 @@ class MujocoSimulator:
         ends: dict[int, MujocoState] = {}
         rewards = np.empty(len(states))
         for step, numbers in by_step.items():
-            own = [states[i] for i in numbers]
-            expansion = self.expand(own, [actions[i] for i in numbers], step)
+            states_here = [states[i] for i in numbers]
+            expansion = self.expand(states_here, [actions[i] for i in numbers], step)
             ends |= dict(zip(numbers, expansion.states, strict=True))
             rewards[numbers] = expansion.rewards_m
         return Expansion([ends[i] for i in range(len(states))], rewards)
@@ -302,9 +302,9 @@ class MujocoSimulator:
         late_count = round(delay.seconds / self.robot.dt_s) if delay else 0
         if late_count == 0 and not dead_band and not conditions.all_of(Stuck):
             return targets, delayed
-        held = np.array(batch.bind("ctrl")[: len(plans)])  # the last targets before the step
+        targets_rad = np.array(batch.bind("ctrl")[: len(plans)])  # the last targets before the step
         if late_count:
-            before = np.repeat(held[:, None], late_count, 1)
+            before = np.repeat(targets_rad[:, None], late_count, 1)
             for number, state in enumerate(states):
                 if state.delayed is not None and len(state.delayed) == late_count:
                     before[number] = state.delayed
@@ -314,8 +314,10 @@ class MujocoSimulator:
         if dead_band:
             for substep in range(self._substeps):
                 wanted = targets[:, substep]
-                held = np.where(np.abs(wanted - held) > dead_band.radians, wanted, held)
-                targets[:, substep] = held
+                targets_rad = np.where(
+                    np.abs(wanted - targets_rad) > dead_band.radians, wanted, targets_rad
+                )
+                targets[:, substep] = targets_rad
         for stuck in conditions.all_of(Stuck):
             targets[:, :, self._legs.index(stuck.leg, stuck.joint)] = stuck.angle_rad
         return targets, delayed

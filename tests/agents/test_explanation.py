@@ -20,7 +20,7 @@ from hexapods.agents.explanation import (
 from hexapods.agents.landing_table import LandingTable
 from hexapods.agents.protocol import Tabular, Transition, Valuing
 from hexapods.agents.q_table import QTable
-from hexapods.agents.registry import OURS, find, learns, settings_of
+from hexapods.agents.registry import BUILT_IN, find, learns, settings_of
 from hexapods.agents.value_table import ValueTable
 from hexapods.assembly import build_learner
 from hexapods.domain.types import Action, Cells, FloatArray
@@ -30,9 +30,9 @@ from hexapods.runs.training import Learner, train
 
 AVERAGE = " by average"
 """Mark of a learner whose objective is the average reward."""
-TEMPORAL = [name for name in OURS if "average_rate" in settings_of(find(name))]
+TEMPORAL = [name for name in BUILT_IN if "average_rate" in settings_of(find(name))]
 TABLE_LEARNERS = [*TEMPORAL, *(name + AVERAGE for name in TEMPORAL)]
-LEARNERS = [*(name for name in OURS if learns(name)), *(name + AVERAGE for name in TEMPORAL)]
+LEARNERS = [*(name for name in BUILT_IN if learns(name)), *(name + AVERAGE for name in TEMPORAL)]
 
 
 def config_of(agent: str, seed: int = 4, steps: int = 90) -> TrainingConfig:

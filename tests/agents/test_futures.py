@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from hexapods.agents.explanation import ExplainingSearch
-from hexapods.agents.registry import OURS, compares, searches
+from hexapods.agents.registry import BUILT_IN, compares, searches
 from hexapods.assembly import build_walkers
 from hexapods.runs.lane import lane_config
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.walker import Walker
 
-SEARCHES = [name for name in OURS if searches(name)]
+SEARCHES = [name for name in BUILT_IN if searches(name)]
 
 
 def walker_of(agent: str, **settings: Any) -> Walker:

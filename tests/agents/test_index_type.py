@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from hexapods.agents.registry import OURS, learns
+from hexapods.agents.registry import BUILT_IN, learns
 
 PROGRAM = """
 import sys
@@ -36,7 +36,7 @@ for agent in sys.argv[1:]:
 
 
 def test_learners_use_no_64_bit_integers_as_indices() -> None:
-    names = [name for name in OURS if learns(name)]
+    names = [name for name in BUILT_IN if learns(name)]
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, *names],
         cwd=Path(__file__).parents[2],

@@ -11,7 +11,7 @@ import pytest
 from app.storage.imported_tables import checked_table
 from hexapods.agents.appearance import colors_of, description_of, title_of
 from hexapods.agents.protocol import Problem, Transition, Valuing
-from hexapods.agents.registry import OURS, build, find, learns, settings_of
+from hexapods.agents.registry import BUILT_IN, build, find, learns, settings_of
 from hexapods.agents.tabular import TabularAgent, TabularLearner
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import HexapodError
@@ -30,7 +30,7 @@ from hexapods.runs.seeding import RACING, generator
 from hexapods.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
 from hexapods.runs.training import Learner, evaluate, train
 
-LEARNERS = [name for name in OURS if learns(name)]
+LEARNERS = [name for name in BUILT_IN if learns(name)]
 TABULAR = [name for name in LEARNERS if issubclass(find(name), TabularAgent)]  # type: ignore[arg-type]
 ON_POLICY = ["sarsa", "expected-sarsa", "n-step-sarsa", "sarsa-lambda"]
 
@@ -356,9 +356,9 @@ def test_a_file_that_lacks_an_array_is_refused(agent: str) -> None:
 
 
 def test_every_agent_looks_different() -> None:
-    colors = colors_of(list(OURS))
-    assert len({title_of(agent) for agent in OURS}) == len(set(colors)) == len(OURS)
-    own = {getattr(find(agent), "color", None) for agent in OURS}
+    colors = colors_of(list(BUILT_IN))
+    assert len({title_of(agent) for agent in BUILT_IN}) == len(set(colors)) == len(BUILT_IN)
+    own = {getattr(find(agent), "color", None) for agent in BUILT_IN}
     assert set(colors) == own
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from hexapods.agents.protocol import Agent, Transition
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.assembly import build_learner
 from hexapods.domain.observation import OBSERVATIONS, Observation, observe
 from hexapods.domain.types import Action
@@ -12,7 +12,7 @@ from hexapods.runs.config import training_config
 from hexapods.runs.training import Learner
 
 AGENTS = [
-    *OURS,
+    *BUILT_IN,
     "tests.own_agents:ThreeStep",
     "tests.own_agents:Restless",
     "tests.own_agents:Plain",

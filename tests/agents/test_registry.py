@@ -47,7 +47,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
 @pytest.mark.usefixtures("installed")
 def test_entry_points_of_packages_are_registered() -> None:
     assert registry.find("roaming") is own_agents.Restless
-    assert set(registry.registered()) == {*registry.OURS, "roaming"}
+    assert set(registry.registered()) == {*registry.BUILT_IN, "roaming"}
 
 
 @pytest.mark.usefixtures("installed")
@@ -118,7 +118,7 @@ def test_learns_is_false_for_look_ahead_only() -> None:
 
 
 def test_factory_function_may_replace_a_class(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "OURS", {"made": lambda rng: own_agents.Plain(rng, PROBLEM)})
+    monkeypatch.setattr(registry, "BUILT_IN", {"made": lambda rng: own_agents.Plain(rng, PROBLEM)})
     assert registry.learns("made")
     agent = registry.build(registry.find("made"), {"rng": np.random.default_rng(0)})
     assert isinstance(agent, own_agents.Plain)

@@ -5,7 +5,7 @@ import pytest
 
 from hexapods.agents import tabular_model
 from hexapods.agents.protocol import Problem
-from hexapods.agents.registry import OURS, build, check_problem, find, learns
+from hexapods.agents.registry import BUILT_IN, build, check_problem, find, learns
 from hexapods.agents.tabular_model import TabularModel
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.grid import FootGrid
@@ -18,7 +18,7 @@ def is_modelling(name: str) -> bool:
     return getattr(find(name), "check_problem", None) is tabular_model.check_problem
 
 
-WITH_A_MODEL = [name for name in OURS if learns(name) and is_modelling(name)]
+WITH_A_MODEL = [name for name in BUILT_IN if learns(name) and is_modelling(name)]
 
 
 def remembered() -> TabularModel:

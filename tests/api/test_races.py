@@ -282,7 +282,7 @@ def test_all_options_can_be_started(api: Api) -> None:
         body = {**WALK, "gait": gait, "robot": robot, "steps": 1}
         api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
-    assert learns == {name: registry.learns(name) for name in registry.OURS}
+    assert learns == {name: registry.learns(name) for name in registry.BUILT_IN}
     api.stop(api.start("/trainings", options["defaults"]["training"]))
     assert set(options["limits"]) <= set(options["help"])
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import experiment_config
@@ -152,7 +152,7 @@ def test_two_robots_of_one_preset_have_different_labels() -> None:
         ({"seeds": 10_000, "alpha": (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)}, "the most is 200,000"),
         ({"grid_side_m": (0.04, 0.2)}, "cannot reach"),
         ({"gaits": ("moonwalk",)}, "left-right-origin"),
-        ({"agents": ("skynet",)}, ", ".join(OURS)),
+        ({"agents": ("skynet",)}, ", ".join(BUILT_IN)),
         ({"alpha": (2.0,)}, "over 0 and at most 1"),
         ({"divisions": (9,)}, "from 2 to 8"),
         ({"observations": ("guessed",)}, "measured, commanded"),

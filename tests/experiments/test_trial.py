@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import UnknownName
 from hexapods.domain.world import named_world
@@ -143,7 +143,7 @@ def test_failing_agent_gives_a_result_with_the_failure() -> None:
 
 
 def test_an_unknown_agent_is_refused() -> None:
-    with pytest.raises(UnknownName, match=", ".join(OURS)):
+    with pytest.raises(UnknownName, match=", ".join(BUILT_IN)):
         run_trial(TrialConfig(training=practice(agent="skynet")))
 
 

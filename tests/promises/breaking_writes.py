@@ -34,7 +34,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import TABLE, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 from app.storage.stored_tables import load_table
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.assembly import build_learner
 from hexapods.runs.config import WalkingProblem, training_config
 from hexapods.runs.records import Evaluated, StepTaken
@@ -123,7 +123,7 @@ def import_experiment(store: RunStore, folder: Path) -> None:
 
 def import_table(store: RunStore, folder: Path) -> None:
     table_import.import_table(
-        _jobs(store), (folder.parent / "table.npz").read_bytes(), tuple(OURS), "Moved", KEY
+        _jobs(store), (folder.parent / "table.npz").read_bytes(), tuple(BUILT_IN), "Moved", KEY
     )
 
 

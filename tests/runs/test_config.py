@@ -149,7 +149,7 @@ def test_a_setting_with_a_reserved_name_is_refused() -> None:
 def test_an_agent_that_cannot_be_offered_is_left_out(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(registry, "registered", lambda: {**registry.OURS, "clashing": Clashing})
+    monkeypatch.setattr(registry, "registered", lambda: {**registry.BUILT_IN, "clashing": Clashing})
     monkeypatch.setattr(registry, "find", registry.registered().__getitem__)
-    assert usable_agents() == tuple(registry.OURS)
+    assert usable_agents() == tuple(registry.BUILT_IN)
     assert "agent clashing is left out" in caplog.text

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hexapods.agents.registry import OURS, learns
+from hexapods.agents.registry import BUILT_IN, learns
 from hexapods.assembly import build_learner, build_walkers, rebuild_lane, rebuild_learner
 from hexapods.domain.disturbances import Limp, SensorNoise
 from hexapods.domain.observation import Observation
@@ -24,7 +24,7 @@ from hexapods.runs.training import Learner, train
 from hexapods.runs.transition_log import Logged, TransitionLog, Transitions
 from tests.quick_robot import HASTY
 
-LEARNERS = [name for name in OURS if learns(name)]
+LEARNERS = [name for name in BUILT_IN if learns(name)]
 
 
 def config_of(agent: str, observation: Observation = "measured") -> TrainingConfig:

@@ -7,7 +7,7 @@ from io import BytesIO
 from typing import Any, NamedTuple
 
 from hexapods.agents.appearance import colors_of
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.extras import needs
 
 with needs("experiments", "the report of an experiment"):
@@ -80,7 +80,7 @@ def figure(width_in: float, height_in: float) -> Figure:
 
 def agent_colours(agents: Sequence[str]) -> dict[str, str]:
     """Return a colour for each agent, and for each of ours."""
-    every = list(dict.fromkeys([*OURS, *agents]))
+    every = list(dict.fromkeys([*BUILT_IN, *agents]))
     return dict(zip(every, colors_of(every), strict=True))
 
 

@@ -4,7 +4,7 @@ from app.features.archives.transfer import export_chunks, import_runs
 from app.storage.database.store import RunStore
 from app.storage.run import IdempotencyKey, Run
 from app.storage.run_ids import RunIds
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 
 
 def export_run(store: RunStore, run_id: str) -> bytes:
@@ -14,5 +14,5 @@ def export_run(store: RunStore, run_id: str) -> bytes:
 def import_run(
     store: RunStore, data: bytes, ids: RunIds, label: str, key: IdempotencyKey | None = None
 ) -> Run:
-    (run,) = import_runs(store, data, ids, tuple(OURS), label, is_one=True, key=key)
+    (run,) = import_runs(store, data, ids, tuple(BUILT_IN), label, is_one=True, key=key)
     return run

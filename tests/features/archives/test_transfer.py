@@ -21,7 +21,7 @@ from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
 from app.storage.stored_races import RACE
 from app.storage.stored_trainings import PRACTICE, evaluations_file, transitions_file
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import SettingValues
@@ -53,7 +53,7 @@ def imported(data: bytes, store: RunStore | None = None) -> Run:
 
 
 def imported_runs(data: bytes, store: RunStore) -> list[Run]:
-    return import_runs(store, data, RunIds(), tuple(OURS), "runs.zip")
+    return import_runs(store, data, RunIds(), tuple(BUILT_IN), "runs.zip")
 
 
 def refusal(data: bytes) -> str:
@@ -257,7 +257,7 @@ def test_unusual_configs_are_imported_but_unregistered_agents_refused(store: Run
     store.create(training(ONE, state="finished", config=odd))
     store.create(training(OTHER, state="finished", config=ODD))
     assert imported(export_run(store, ONE)) == store.get(ONE)
-    assert ", ".join(OURS) in refusal(export_run(store, OTHER))
+    assert ", ".join(BUILT_IN) in refusal(export_run(store, OTHER))
 
 
 def test_lanes_with_settings_are_imported(store: RunStore) -> None:

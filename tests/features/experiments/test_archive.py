@@ -13,7 +13,7 @@ from app.features.experiments.archived_trials import TRIALS
 from app.features.experiments.trial_rows import Trials
 from app.storage.database.store import RunStore
 from app.storage.run import State
-from hexapods.agents.registry import OURS
+from hexapods.agents.registry import BUILT_IN
 from hexapods.experiments.config import SUMMARY, experiment_config
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
@@ -82,7 +82,7 @@ def test_unregistered_agents_are_refused_without_importing_their_module(
     monkeypatch.syspath_prepend(tmp_path)
     config = replace(SWEEP, agents=("q-learning", "evil:Agent"))
     store.create(experiment("a", state="failed", config=config))
-    assert ", ".join(OURS) in refusal(export_run(store, "a"))
+    assert ", ".join(BUILT_IN) in refusal(export_run(store, "a"))
     assert not (tmp_path / "ran").exists()
 
 

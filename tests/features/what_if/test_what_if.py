@@ -23,7 +23,7 @@ from app.features.what_if.what_if import (
 )
 from app.jobs.process_pool import NICENESS, ProcessPool
 from app.storage.errors import Busy
-from hexapods.agents.registry import OURS, learns
+from hexapods.agents.registry import BUILT_IN, learns
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.world import World
@@ -96,7 +96,7 @@ def test_all_walk_in_the_world_as_it_is_in_the_end(what_if: WhatIf) -> None:
     assert what_if.ask(later)["chosen"]["distances_m"] == distances(later)
 
 
-@pytest.mark.parametrize("agent", [name for name in OURS if learns(name)])
+@pytest.mark.parametrize("agent", [name for name in BUILT_IN if learns(name)])
 def test_any_learner_can_be_asked_about(agent: str, what_if: WhatIf) -> None:
     training = training_config(gait="left-right-origin", agent=agent, steps=3, tolerance=0.03)
     answer = what_if.ask(training)
