@@ -64,11 +64,11 @@ class Features:
         """
         for feature in self.classes:
             with blaming(feature, "its start"):
-                made = self._features[feature.name] = feature(core)
-                if (provider := made.provider()) is not None:
+                built = self._features[feature.name] = feature(core)
+                if (provider := built.provider()) is not None:
                     self.providers.append(provider)
             if (feature.visible_runs, feature.why_hidden) != _HIDE_NOTHING:
-                self._hiding.append(made)
+                self._hiding.append(built)
 
     def __iter__(self) -> Iterator[Feature]:
         return iter(self._features.values())
@@ -84,7 +84,9 @@ class Features:
 
     def stage_members(self) -> dict[str, Record]:
         """Return what each stage keeps for features, by name, as it begins."""
-        kinds = {name: kind for one in self.classes for name, kind in one.stage_members.items()}
+        kinds = {
+            name: kind for feature in self.classes for name, kind in feature.stage_members.items()
+        }
         return {name: kind() for name, kind in kinds.items()}
 
     def owner_of(self, run_id: str) -> Owner | None:

@@ -43,17 +43,17 @@ def load(without: Collection[str] = ()) -> Catalogue:
             f"{PREFIX}WITHOUT names no feature by {unknown[0]!r}; there are "
             f"{', '.join(sorted(available))}"
         )
-    kept = {name: feature for name, feature in available.items() if name not in without}
+    included = {name: feature for name, feature in available.items() if name not in without}
     ordered: dict[str, type[Feature]] = {}
-    for name in kept:
-        _add(name, kept, available, ordered)
+    for name in included:
+        _add(name, included, available, ordered)
     left_out = (feature for name, feature in available.items() if name in without)
     return Catalogue(tuple(ordered.values()), tuple(left_out))
 
 
 def _add(
     name: str,
-    kept: Mapping[str, type[Feature]],
+    included: Mapping[str, type[Feature]],
     available: Mapping[str, type[Feature]],
     ordered: dict[str, type[Feature]],
     waiting: tuple[str, ...] = (),
@@ -65,25 +65,25 @@ def _add(
     if name in (*ordered, *waiting):
         return
     waiting += (name,)
-    for needed in kept[name].needs:
-        if needed not in kept:
+    for needed in included[name].needs:
+        if needed not in included:
             where = "is left out" if needed in available else "is not installed"
             raise InvalidInput(
                 f"the feature {name} needs {needed}, which {where}; leave {name} out too, by "
                 f"{PREFIX}WITHOUT"
             )
-        _add(needed, kept, available, ordered, waiting)
-    for used in kept[name].uses:
-        if used in kept:
-            _add(used, kept, available, ordered, waiting)
-    ordered[name] = kept[name]
+        _add(needed, included, available, ordered, waiting)
+    for used in included[name].uses:
+        if used in included:
+            _add(used, included, available, ordered, waiting)
+    ordered[name] = included[name]
 
 
 def _available(without: Collection[str]) -> dict[str, type[Feature]]:
     """Return the classes of all features that are installed, by name."""
     available: dict[str, type[Feature]] = {}
-    for name, origin, part in feature_modules("feature", GROUP, without):
-        feature = _checked(name, getattr(part, "FEATURE", part))
+    for name, origin, module in feature_modules("feature", GROUP, without):
+        feature = _checked(name, getattr(module, "FEATURE", module))
         if name in available:
             raise InvalidInput(
                 f"two features are called {name}, one of them in {origin}; uninstall one"

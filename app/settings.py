@@ -177,9 +177,9 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
     features, without = read_feature_settings(environ, **options), _without(environ, options)
     names = {declared.name for declared in fields(Settings)}
     of_features = {declared.name for settings in features for declared in fields(settings)}
-    given = _given((names | options.keys()) - of_features - {"features"}, environ, options)
+    values_given = _given((names | options.keys()) - of_features - {"features"}, environ, options)
     stricter = _stricter_defaults(features, without)
-    values = {name: value for name, value in stricter.items() if name in names} | given
+    values = {name: value for name, value in stricter.items() if name in names} | values_given
     values |= read_texts(Settings, values)
     if isinstance(values.get("port"), str):
         values["port"] = _port(values["port"])
@@ -199,10 +199,10 @@ def read_feature_settings(
     without = _without(environ, options)
     kinds = _kinds_of_features(without)
     names = {declared.name for kind in kinds for declared in fields(kind)}
-    given = _given(names, environ, options)
+    values_given = _given(names, environ, options)
 
     def read(defaults: Mapping[str, Any]) -> tuple[FeatureSettings, ...]:
-        return tuple(kind(**read_texts(kind, {**defaults, **given})) for kind in kinds)
+        return tuple(kind(**read_texts(kind, {**defaults, **values_given})) for kind in kinds)
 
     return read(_stricter_defaults(read({}), without))
 
@@ -233,8 +233,8 @@ def _given(
     names: Collection[str], environ: Mapping[str, str], options: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return what is set of these settings, by name: options before variables."""
-    given = {name: text for name in names if (text := environ.get(variable_of(name)))}
-    return given | {
+    texts = {name: text for name in names if (text := environ.get(variable_of(name)))}
+    return texts | {
         name: value for name, value in options.items() if name in names and value is not None
     }
 
@@ -297,8 +297,8 @@ def _port(text: str) -> int:
     return int(text)
 
 
-def _invalid_port(given: int | str) -> InvalidInput:
-    return InvalidInput(f"the port must be from 0 to {MAX_PORT}, not {given!r}")
+def _invalid_port(port: int | str) -> InvalidInput:
+    return InvalidInput(f"the port must be from 0 to {MAX_PORT}, not {port!r}")
 
 
 def _check_host(name: str) -> None:

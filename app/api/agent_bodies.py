@@ -63,13 +63,13 @@ def _race_or_branch(value: Any) -> str:
 
 def _practice_body(agent: str) -> type[PracticeBody]:
     fields: dict[str, Any] = {
-        name: (field_of([one]), ... if one.default is REQUIRED else one.default)
-        for name, one in agent_settings(agent).items()
+        name: (field_of([setting]), ... if setting.default is REQUIRED else setting.default)
+        for name, setting in agent_settings(agent).items()
     }
     settings = settings_body(f"{_camel_case(agent)}Settings", fields)
-    own = record_fields(TrainingConfig, {*WALK, "world", "seed", "agent", "settings"})
+    practice_fields = record_fields(TrainingConfig, {*WALK, "world", "seed", "agent", "settings"})
     name = f"{_camel_case(agent)}Practice"
-    return create_model(name, __base__=PracticeBody, settings=settings, **own)
+    return create_model(name, __base__=PracticeBody, settings=settings, **practice_fields)
 
 
 def settings_body(name: str, fields: Mapping[str, Any]) -> tuple[type[SettingsBody], Any]:
@@ -123,8 +123,8 @@ def with_settings_of(agent: str, base: type[Body], suffix: str) -> type[Body]:
 def _optional_settings(agent: str) -> dict[str, Any]:
     """Return fields of an agent's settings, none of them required: a training may say them."""
     return {
-        name: (field_of([one]), None if one.default is REQUIRED else one.default)
-        for name, one in agent_settings(agent).items()
+        name: (field_of([setting]), None if setting.default is REQUIRED else setting.default)
+        for name, setting in agent_settings(agent).items()
     }
 
 
@@ -151,14 +151,19 @@ def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
         for name, setting in changeable_settings(agent).items():
             declared.setdefault(name, []).append(setting)
     del declared["pace"]  # a field of its own
-    fields: dict[str, Any] = {name: (field_of(one), None) for name, one in declared.items()}
+    fields: dict[str, Any] = {
+        name: (field_of(settings), None) for name, settings in declared.items()
+    }
     doc, settings = ChangeBody.__doc__, settings_body("LiveSettings", fields)
     return create_model("ChangeBody", __base__=ChangeBody, __doc__=doc, settings=settings)
 
 
 def field_of(declared: Sequence[DeclaredSetting]) -> Any:
     """Return the type of a setting: the union of its declarations by the agents that have it."""
-    types = {(str(one.annotation), one.about): Annotated[Any, Declared(one)] for one in declared}
+    types = {
+        (str(setting.annotation), setting.about): Annotated[Any, Declared(setting)]
+        for setting in declared
+    }
     return Union[tuple(types.values())]  # noqa: UP007 - a union of a variable number of types
 
 

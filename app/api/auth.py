@@ -64,7 +64,8 @@ class TokenGuard:
         identity = None
         if role == "spectator" or not roles.needs_token:
             identity = next(
-                filter(None, (one.identify(scope) for one in self._features.providers)), None
+                filter(None, (provider.identify(scope) for provider in self._features.providers)),
+                None,
             )
         role = role if identity is None else "spectator"
         if role == "spectator" and roles.needs_token:
@@ -108,13 +109,13 @@ class TokenGuard:
         """Open a session for the token of `?token=…`, and redirect to the address without it."""
         items = _query(scope)
         rest = urlencode([(name, value) for name, value in items if name != "token"])
-        given = next(value for name, value in items if name == "token")
+        token = next(value for name, value in items if name == "token")
         # Relative, so that it is valid behind a proxy that serves the app under a prefix.
         response = RedirectResponse(f"?{rest}" if rest else "./", 303)
         response.headers["Cache-Control"] = "no-store"
         if not roles.needs_token:
             return response
-        if not roles.is_token(given):
+        if not roles.is_token(token):
             wait_s = self._wrong_guesses.take(client_of(scope))
             if wait_s > 0:
                 return _too_many(wait_s)

@@ -44,12 +44,12 @@ class CompressedContent:
         """Return the response to a request, without content if its copy is current."""
         request = Headers(scope=scope)
         is_gzipped = self._is_smaller and accepts_gzip(request.get("accept-encoding", ""))
-        body, own = self._gzipped if is_gzipped else self._plain
-        headers = {**self._headers, **own}
-        known = {
+        body, encoding_headers = self._gzipped if is_gzipped else self._plain
+        headers = {**self._headers, **encoding_headers}
+        known_tags = {
             tag.strip().removeprefix("W/") for tag in request.get("if-none-match", "").split(",")
         }
-        if headers["ETag"] in known or "*" in known:
+        if headers["ETag"] in known_tags or "*" in known_tags:
             headers.pop("Content-Encoding", None)
             return Response(status_code=304, headers=headers)
         return Response(body, headers=headers, media_type=self._media_type)
@@ -72,8 +72,8 @@ def gzipped(request: Request, content: bytes, media_type: str) -> Response:
 
 def accepts_gzip(accept_encoding: str) -> bool:
     """Whether an `Accept-Encoding` header names gzip with a quality above zero."""
-    for part in accept_encoding.lower().replace(" ", "").split(","):
-        coding, _, quality = part.partition(";q=")
+    for item in accept_encoding.lower().replace(" ", "").split(","):
+        coding, _, quality = item.partition(";q=")
         if coding == "gzip":
             return quality.strip("0.") != "" or quality == ""
     return False

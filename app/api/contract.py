@@ -275,9 +275,11 @@ def _requirements(
     access: Access, settings: Settings, providers: Sequence[IdentityProvider]
 ) -> list[Schema]:
     """Return by what an operation can be used; an empty requirement means nothing is needed."""
-    others = [one for provider in providers for one in provider.requirements(access)]
+    alternatives = [
+        requirement for provider in providers for requirement in provider.requirements(access)
+    ]
     if not access.is_for_operators:
-        return others
+        return alternatives
     is_public = settings.spectators == "public"
     is_open = settings.token is None or access.admits_spectators(is_public=is_public)
-    return [{"bearer": []}, {"cookie": []}, *([{}] if is_open else others)]
+    return [{"bearer": []}, {"cookie": []}, *([{}] if is_open else alternatives)]

@@ -110,16 +110,16 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
         fields = {*VALID, error.get("ctx", {}).get("name")}
         if error["type"] == "missing" or error["type"] in _OF_LENGTH:
             fields.add(error["loc"][-1])
-        path = [part for part in error["loc"] if part in fields or isinstance(part, int)]
+        path = [key for key in error["loc"] if key in fields or isinstance(key, int)]
         if error["type"] == "json_invalid":
             path = []
-        field = ".".join(str(part) for part in path)
+        field = ".".join(str(key) for key in path)
         details.setdefault(field, _sentence(field, error, path))
     return [{"field": field, "detail": detail} for field, detail in details.items()]
 
 
 def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
-    names = [part for part in path if isinstance(part, str)]
+    names = [key for key in path if isinstance(key, str)]
     if error["type"] in ("unknown_field", "says_all"):
         where = f"{field}: " if field else ""
         return f"{where}{error['msg']}."

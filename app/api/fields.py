@@ -64,7 +64,7 @@ def _add_tag_pattern(schema: dict[str, Any]) -> None:
 
 def _add_notes_pattern(schema: dict[str, Any]) -> None:
     _add_pattern(schema)
-    allowed = "".join(_escaped(ord(one)) for one in NOTES_CONTROLS)
+    allowed = "".join(_escaped(ord(character)) for character in NOTES_CONTROLS)
     schema["pattern"] = f"^({schema['pattern'][1:-2]}|[{allowed}])*$"
 
 
@@ -178,21 +178,21 @@ def record_fields(
         optional: names of fields whose default is None, whatever it is in the record.
     """
     hints = get_type_hints(record, include_extras=True)
-    found: dict[str, Any] = {}
-    for one in fields(record):
-        if one.name in without:
+    types: dict[str, Any] = {}
+    for field in fields(record):
+        if field.name in without:
             continue
-        hint, default = hints[one.name], ... if one.default is MISSING else one.default
-        if one.default_factory is not MISSING:
-            default = one.default_factory()
+        hint, default = hints[field.name], ... if field.default is MISSING else field.default
+        if field.default_factory is not MISSING:
+            default = field.default_factory()
         if get_origin(hint) is tuple:
-            shape, default = OneOrMore[_shape(one.name, get_args(hint)[0])], None  # type: ignore[misc]
+            shape, default = OneOrMore[_shape(field.name, get_args(hint)[0])], None  # type: ignore[misc]
         else:
-            shape = _shape(one.name, hint)
-        if one.name in optional:
+            shape = _shape(field.name, hint)
+        if field.name in optional:
             shape, default = Optional[shape], None  # noqa: UP045  # of a type made here
-        found[one.name] = (Annotated[shape, Field(description=VALID.get(one.name))], default)
-    return found
+        types[field.name] = (Annotated[shape, Field(description=VALID.get(field.name))], default)
+    return types
 
 
 def _shape(name: str, annotation: Any) -> Any:
@@ -228,7 +228,7 @@ def known_members(record: Any) -> BeforeValidator:
 
     Pydantic alone would tell of each, of which a body may have a hundred thousand.
     """
-    valid = [one.name for one in fields(record)]
+    valid = [field.name for field in fields(record)]
 
     def check(value: Any) -> Any:
         unknown = [name for name in value if name not in valid] if isinstance(value, dict) else []

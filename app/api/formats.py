@@ -33,7 +33,7 @@ def negotiated(
         return query
     qualities: dict[str, float] = {}
     for entry in request.headers.get("accept", "").split(","):
-        media_type, *parameters = (part.strip().lower() for part in entry.split(";"))
+        media_type, *parameters = (item.strip().lower() for item in entry.split(";"))
         name = types.get(media_type)
         if name in formats:
             qualities.setdefault(str(name), _quality(parameters))

@@ -35,7 +35,9 @@ class RouteGuards:
                 404, is answered inside the guards.
         """
         # Unexpected errors are for the app's own handler, which raises them again.
-        expected = {kind: one for kind, one in (handlers or {}).items() if kind is not Exception}
+        expected = {
+            kind: handler for kind, handler in (handlers or {}).items() if kind is not Exception
+        }
         answered = ExceptionMiddleware(_call_route, expected)
         limited = BodyMemoryLimit(ConcurrencyLimit(answered, slots))
         counted = RateLimit(limited, settings)

@@ -51,7 +51,7 @@ class HostGuard:
         ]
         # For proxies that change the Host which browsers send.
         self._origins = {
-            _origin(one) for one in (*allowed_origins, settings.public_origin or "")
+            _origin(origin) for origin in (*allowed_origins, settings.public_origin or "")
         } - {None}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -112,7 +112,7 @@ def _is_form_request(headers: Headers) -> bool:
     if "x-requested-with" in headers or "authorization" in headers:
         return False
     types = headers.getlist("content-type") or [""]
-    return any(one.partition(";")[0].strip().lower() in _FORM_TYPES for one in types)
+    return any(media_type.partition(";")[0].strip().lower() in _FORM_TYPES for media_type in types)
 
 
 def _split(address: str) -> tuple[str, int | None] | None:

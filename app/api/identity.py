@@ -77,4 +77,4 @@ def run_ids_of(scope: Scope) -> Iterator[str]:
     if run_id is not None:
         yield str(run_id)
     for _, value in parse_qsl(scope["query_string"].decode("latin-1")):
-        yield from (part.strip() for part in value.split(","))
+        yield from (run_id.strip() for run_id in value.split(","))

@@ -126,17 +126,19 @@ class _ServicesCollector(Collector):
             services.bus.steps_per_s,
         )
         yield GaugeMetricFamily(
-            "hexapods_viewers", "Who watches the stage.", sum(one.viewers for one in counters)
+            "hexapods_viewers",
+            "Who watches the stage.",
+            sum(counter.viewers for counter in counters),
         )
         yield CounterMetricFamily(
             "hexapods_frames_sent",
             "Frames sent to viewers.",
-            sum(one.frames_sent for one in counters),
+            sum(counter.frames_sent for counter in counters),
         )
         yield CounterMetricFamily(
             "hexapods_frames_merged",
             "Frames that a viewer got as a part of a later one, because it was behind.",
-            sum(one.frames_merged for one in counters),
+            sum(counter.frames_merged for counter in counters),
         )
         yield from services.features.metrics()
         yield InfoMetricFamily("hexapods", "The server.", {"version": __version__})

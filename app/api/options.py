@@ -198,10 +198,10 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
             "keeps_learning": keeps_learning(name),
             "steps_ahead": getattr(find(name), "steps_ahead", None),
             "color": color,
-            "settings": {n: setting_option(one) for n, one in agent_settings(name).items()},
+            "settings": {n: setting_option(setting) for n, setting in agent_settings(name).items()},
             "live_settings": {
-                n: setting_option(one)
-                for n, one in changeable_settings(name).items()
+                n: setting_option(setting)
+                for n, setting in changeable_settings(name).items()
                 if n not in _SETTINGS
             },
         }
@@ -213,11 +213,11 @@ def _worlds() -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "title": one.title,
-            "description": one.help,
-            "disturbances": [as_mapping(each) for each in one.world.disturbances],
+            "title": named.title,
+            "description": named.help,
+            "disturbances": [as_mapping(each) for each in named.world.disturbances],
         }
-        for name, one in WORLDS.items()
+        for name, named in WORLDS.items()
     ]
 
 
@@ -235,7 +235,9 @@ def _disturbances() -> list[dict[str, Any]]:
             "part": kind.part,
             "repairs": kind.repairs,
             "adjective": kind.adjective or name,
-            "simulators": [one for one in SIMULATOR_TEXTS if is_simulated(name, one)],
+            "simulators": [
+                simulator for simulator in SIMULATOR_TEXTS if is_simulated(name, simulator)
+            ],
         }
         for name, kind in disturbances.KINDS.items()
     ]
@@ -243,7 +245,7 @@ def _disturbances() -> list[dict[str, Any]]:
 
 def _usual_choices(kind: type[disturbances.Disturbance], field: str) -> dict[str, Any]:
     """Return choices of a field on which limits depend: the joints of robots that are built in."""
-    of_field = [one.ranges for one in kind.ranges.values() if one.field == field]
+    of_field = [usual.ranges for usual in kind.ranges.values() if usual.field == field]
     return {"choices": [*of_field[0]], "choice_titles": [*of_field[0]]} if of_field else {}
 
 
@@ -252,14 +254,14 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
     declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
     options = {}
     short = {field: name for name, field in SHORT.items()}
-    for one in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
-        setting = declared.get(one.name, _LEGS)
-        is_list, is_required = setting is _LEGS, one.default is MISSING
-        ranges = kind.ranges.get(one.name)
-        options[one.name] = {
+    for item in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
+        setting = declared.get(item.name, _LEGS)
+        is_list, is_required = setting is _LEGS, item.default is MISSING
+        ranges = kind.ranges.get(item.name)
+        options[item.name] = {
             **setting_option(setting),
-            **_usual_choices(kind, one.name),
-            "short": short.get(one.name, one.name),
+            **_usual_choices(kind, item.name),
+            "short": short.get(item.name, item.name),
             "is_list": is_list,
             "is_required": is_required,
             "ranges": None if ranges is None else ranges._asdict(),
@@ -291,7 +293,11 @@ def _race_defaults() -> dict[str, Any]:
 
 def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | None]]:
     return {
-        **{name: [one.low, one.high] for name, one in settings.items() if one.is_number},
+        **{
+            name: [setting.low, setting.high]
+            for name, setting in settings.items()
+            if setting.is_number
+        },
         "lanes": [1, MAX_LANES],
         "legs": [MIN_LEGS, MAX_LEGS],
         "disturbances": [0, MAX_DISTURBANCES],

@@ -103,7 +103,7 @@ def page_features(page_files: PageFiles) -> list[dict[str, Any]]:
 def _start_modules(name: str, features: list[dict[str, Any]], page_files: PageFiles) -> list[str]:
     """Return the modules that the dashboard loads at once because a feature has code for it."""
     at_once = [f["name"] for f in features if f["hasCode"] and "codeFor" not in f]
-    has_code = [one for one in at_once if one not in page_files.others]
+    has_code = [feature for feature in at_once if feature not in page_files.others]
     return [f"static/features/{feature}/feature.js" for feature in has_code if name == _INDEX]
 
 
@@ -158,14 +158,14 @@ def imported_modules(entry: str, folder: Path) -> list[str]:
         entry: the module's path, which begins with `static/`.
         folder: the folder that `static` stands for.
     """
-    found = [entry]
-    for module in found:
+    modules = [entry]
+    for module in modules:
         source = (folder / module.removeprefix("static/")).read_text("utf-8")
         for path in _IMPORT.findall(source):
             imported = posixpath.normpath(posixpath.join(posixpath.dirname(module), path))
-            if imported not in found:
-                found.append(imported)
-    return found
+            if imported not in modules:
+                modules.append(imported)
+    return modules
 
 
 @policy(access=WATCH)
@@ -173,7 +173,10 @@ def robots_txt(request: Request) -> Response:
     """Return what crawlers may read: nothing, unless a feature has something to be found."""
     services: Services = request.app.state.services
     texts = (feature.robots_txt() for feature in services.features)
-    text = next((one for one in texts if one is not None), "User-agent: *\nDisallow: /\n")
+    text = next(
+        (text_of_feature for text_of_feature in texts if text_of_feature is not None),
+        "User-agent: *\nDisallow: /\n",
+    )
     age_s = int(timedelta(days=1).total_seconds())
     return PlainTextResponse(text, headers={"Cache-Control": f"max-age={age_s}"})
 
@@ -237,9 +240,9 @@ class _Files(StaticFiles):
         del status_code
         path, version = str(full_path), (stat_result.st_mtime_ns, stat_result.st_size)
         file = (stat_result.st_dev, stat_result.st_ino)
-        known = self._contents.get(file)
-        if known is None or known[0] != version:
+        cached = self._contents.get(file)
+        if cached is None or cached[0] != version:
             media_type = mimetypes.guess_type(path)[0] or "text/plain"
-            known = (version, CompressedContent(Path(path).read_bytes(), media_type))
-            self._contents[file] = known
-        return known[1].response(scope)
+            cached = (version, CompressedContent(Path(path).read_bytes(), media_type))
+            self._contents[file] = cached
+        return cached[1].response(scope)

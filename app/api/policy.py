@@ -328,7 +328,7 @@ def _is_guarded(route: BaseRoute, app: FastAPI) -> bool:
         return True
     # FastAPI serves copies of other routes of a router that is included, which are not guarded.
     is_page = isinstance(route, (GuardedPage, GuardedFiles, GuardedSocket))
-    return is_page and any(route is one for one in app.routes)
+    return is_page and any(route is route_ for route_ in app.routes)
 
 
 def policies(app: FastAPI) -> dict[tuple[str, str], Policy]:
@@ -340,5 +340,5 @@ def policies(app: FastAPI) -> dict[tuple[str, str], Policy]:
             by_operation["get", route.path] = route.policy
         elif isinstance(route, (GuardedRoute, GuardedPage)):
             path = context.path_format or route.path
-            by_operation |= {(one.lower(), path): route.policy for one in route.methods or ()}
+            by_operation |= {(method.lower(), path): route.policy for method in route.methods or ()}
     return by_operation

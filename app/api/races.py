@@ -87,8 +87,8 @@ def get_timeline(
     def compute() -> bytes:
         services.stopping.check()
         _, config, lanes = _find_recorded(services, run_id)
-        found = timeline(lanes, run.lane_training_ids, config.steps, clock)
-        return gzip.compress(msgspec.json.encode(found), compresslevel=1, mtime=0)
+        document = timeline(lanes, run.lane_training_ids, config.steps, clock)
+        return gzip.compress(msgspec.json.encode(document), compresslevel=1, mtime=0)
 
     # Of a race that has ended it is computed once, for all who look at it.
     key = ("timeline", run.id, run.created_at, run.state, run.ended_at, clock)

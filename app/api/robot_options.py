@@ -41,38 +41,38 @@ def built_in_options(creature: Creature) -> dict[str, Any]:
 
 def stored_options(stored: StoredRobot) -> dict[str, Any]:
     """Return a stored robot, with its body."""
-    made = stored.robot
+    robot = stored.robot
     origin = "made here" if stored.file is None else f"from {stored.file}"
     return {
         "name": stored.id,
         "title": stored.name,
-        "description": f"{counted(len(made.legs), 'leg')}; {origin}.",
-        **_robot(made, own_gait(made)),
+        "description": f"{counted(len(robot.legs), 'leg')}; {origin}.",
+        **_robot(robot, own_gait(robot)),
         "hidden": stored.hidden,
-        "body": by_value(made),
+        "body": by_value(robot),
     }
 
 
-def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
-    legs = legs_of(made)
+def _robot(robot: Robot, gait: str | GaitSpec) -> dict[str, Any]:
+    legs = legs_of(robot)
     numbers = range(1, len(legs) + 1)
-    gaits = [name for name in NAMED_GAITS if _divides(name, made)]
+    gaits = [name for name in NAMED_GAITS if _divides(name, robot)]
     return {
-        "id": made.id,
+        "id": robot.id,
         "hidden": False,
         "body": None,
-        "robot": as_mapping(made),
-        "grid_side_m": usual_grid_side_m(made, gait),
+        "robot": as_mapping(robot),
+        "grid_side_m": usual_grid_side_m(robot, gait),
         "joints": [[joint.name for joint in legs.of_leg(number)] for number in numbers],
         "limits_rad": [[joint.limits_rad for joint in legs.of_leg(number)] for number in numbers],
-        "azimuths_deg": [*made.azimuths_deg],
+        "azimuths_deg": [*robot.azimuths_deg],
         "gait": gait_as_json(gait),
         "gaits": gaits,
         "recommended_agent": {
-            name: recommend(made, resolve(name, made.azimuths_deg), len(FootGrid())).agent
+            name: recommend(robot, resolve(name, robot.azimuths_deg), len(FootGrid())).agent
             for name in gaits
         },
-        "built": {part: getattr(made, part) for part in _replaced_parts()},
+        "built": {name: getattr(robot, name) for name in _replaced_parts()},
     }
 
 

@@ -128,15 +128,15 @@ def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
 
 def delete_each(services: Services, ids: Iterable[str]) -> dict[str, Any]:
     """Delete each run that can be deleted, in this order; return the JSON of `DeletedView`."""
-    deleted, kept = [], []
-    for one in dict.fromkeys(ids):
+    deleted, refused = [], []
+    for run_id in dict.fromkeys(ids):
         try:
-            services.jobs.delete(one)
+            services.jobs.delete(run_id)
         except (NotFound, Conflict) as error:
-            kept.append({"id": one, "reason": str(error)})
+            refused.append({"id": run_id, "reason": str(error)})
         else:
-            deleted.append(one)
-    return {"deleted": deleted, "kept": kept}
+            deleted.append(run_id)
+    return {"deleted": deleted, "kept": refused}
 
 
 @router.get(
@@ -151,10 +151,10 @@ def delete_each(services: Services, ids: Iterable[str]) -> dict[str, Any]:
 @policy(access=WATCH)
 def get_curves(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Return thinned curves; `GET /trainings/{run_id}/curve` has all points of one."""
-    found = services.store.curves.thinned(frozenset(ids), MAX_POINTS)
+    points_by_run = services.store.curves.thinned(frozenset(ids), MAX_POINTS)
     curves = [
-        {"id": one, "steps": [step for step, _ in points], "distances_m": [d for _, d in points]}
-        for one, points in sorted(found.items())
+        {"id": run_id, "steps": [step for step, _ in points], "distances_m": [d for _, d in points]}
+        for run_id, points in sorted(points_by_run.items())
     ]
     return JSONResponse(finite({"curves": curves}))
 

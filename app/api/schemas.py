@@ -46,8 +46,8 @@ Disturbances = Annotated[
         description="Changes of the robot and the ground, by step.",
     ),
 ]
-WALK = {one.name for one in fields(WalkingProblem)} - {"world"}
-_PRACTICE = {one.name for one in fields(TrainingConfig)}.difference(
+WALK = {field.name for field in fields(WalkingProblem)} - {"world"}
+_PRACTICE = {field.name for field in fields(TrainingConfig)}.difference(
     WALK, ("world", "seed", "agent", "settings")
 )
 
@@ -90,10 +90,10 @@ class PracticeBody(Body):
                 "a training that continues another goes on with its generator: leave out seed, "
                 "or leave out continue_from"
             )
-        given = {name: getattr(self, name) for name in self.model_fields_set & _PRACTICE}
-        given |= given_settings(self.settings)
+        practice = {name: getattr(self, name) for name in self.model_fields_set & _PRACTICE}
+        practice |= given_settings(self.settings)
         chosen_seed = seed if self.seed is None else self.seed
-        config = training_config(**vars(walk), **given, seed=chosen_seed, agent=agent)
+        config = training_config(**vars(walk), **practice, seed=chosen_seed, agent=agent)
         return TrainingStart(config, self.name or None, self.continue_from)
 
 
@@ -127,11 +127,11 @@ class LaneBody(Body):
         """Convert to the request of the service."""
         practice = self.training
         training = None if practice is None else practice.practice(walk, self.agent, seed)
-        given = {
+        fields_of_lane = {
             name: getattr(self, name) for name in LANE_FIELDS if getattr(self, name) is not None
         }
         settings = given_settings(self.settings)
-        return LaneStart(self.agent, self.training_id, training, given, settings)
+        return LaneStart(self.agent, self.training_id, training, fields_of_lane, settings)
 
 
 class RaceBody(WalkBody):

@@ -19,7 +19,7 @@ def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
     """Return the routes of the stage, with what it keeps for features."""
     router = api_router(prefix="/stage", tags=["stage"])
     view = stage_view(tuple(features))
-    kinds = {name: kind for one in features for name, kind in one.stage_members.items()}
+    kinds = {name: kind for feature in features for name, kind in feature.stage_members.items()}
     added: dict[str, Any] = {
         name: (Annotated[kind, known_members(kind)] | None, None) for name, kind in kinds.items()
     }
@@ -37,8 +37,8 @@ def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
         """Change the given fields; the others are unchanged."""
         changes: dict[str, Any] = dict(body)
         members = {name: changes.pop(name) for name in kinds}
-        given = {name: member for name, member in members.items() if member is not None}
-        shared.stage.set(**changes, members=given)
+        changed_members = {name: member for name, member in members.items() if member is not None}
+        shared.stage.set(**changes, members=changed_members)
         return JSONResponse(shared.stage.state())
 
     return router

@@ -27,8 +27,8 @@ class StagePaths:
         """Call the app."""
         if scope["type"] in ("http", "websocket"):
             path: str = scope["path"]
-            found = (one for one in self._stages if path.startswith(f"{one.path}/"))
-            stage = max(found, key=lambda one: len(one.path), default=self._stages[0])
+            matching = (stage_ for stage_ in self._stages if path.startswith(f"{stage_.path}/"))
+            stage = max(matching, key=lambda shared: len(shared.path), default=self._stages[0])
             scope.setdefault("state", {})["stage"] = stage
             scope["root_path"] = stage.path
         await self._app(scope, receive, send)

@@ -60,10 +60,10 @@ def import_training(
     return located(services, request, run, 201)
 
 
-def _without_step(given: Any) -> Any:
-    if isinstance(given, dict) and "at_step" in given:
+def _without_step(body: Any) -> Any:
+    if isinstance(body, dict) and "at_step" in body:
         raise InvalidInput("it happens at the next step; leave out at_step")
-    return given
+    return body
 
 
 @router.post(
@@ -85,8 +85,8 @@ def disturb_training(
     `repair` ends what happened to legs.
     """
     find(services, "training", run_id)
-    made = services.jobs.disturb(run_id, body)
-    return JSONResponse(as_mapping(made), 202)
+    happened = services.jobs.disturb(run_id, body)
+    return JSONResponse(as_mapping(happened), 202)
 
 
 @router.get(

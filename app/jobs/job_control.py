@@ -228,8 +228,8 @@ class JobControl:
         except InvalidInput as error:  # it fitted when the server checked it, some steps ago
             self.send(Changed(command.token, step, {}, str(error)))
             return
-        made = {name: value for name, value in self.changes[-1].items() if name != "step"}
-        self.send(Changed(command.token, step, made))
+        changes = {name: value for name, value in self.changes[-1].items() if name != "step"}
+        self.send(Changed(command.token, step, changes))
 
     def _replay_due(self, step: int, agent: object) -> None:
         while self._to_replay and self._to_replay[0]["step"] <= step:

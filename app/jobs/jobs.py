@@ -182,8 +182,8 @@ class Jobs:
             run = self._store.get(run_id)
             if run.state in RESUMABLE:
                 runs = resumed_runs(run, self._store)
-                for one in runs:
-                    self._check_needed_by_none(one)
+                for queued in runs:
+                    self._check_needed_by_none(queued)
                 return self._enqueue(runs, resumed=True)
             try:
                 resumed = self._resume_paused(run)
@@ -254,12 +254,12 @@ class Jobs:
         self._change_live(run_id, checked)
         return self._store.get(run_id)
 
-    def disturb(self, run_id: str, given: Disturbance) -> Disturbance:
+    def disturb(self, run_id: str, disturbance: Disturbance) -> Disturbance:
         """Let something happen to a training from its next step on, and wait for it.
 
         Args:
             run_id: id of the training.
-            given: what happens; its `at_step` is replaced.
+            disturbance: what happens; its `at_step` is replaced.
 
         Returns:
             the disturbance, with the step in which it begins.
@@ -275,10 +275,10 @@ class Jobs:
         def checked(run: Run) -> Mapping[str, Any]:
             config = run.config
             if isinstance(config, TrainingConfig):
-                soon = replace(given, at_step=min(run.done, config.steps - 1))
+                soon = replace(disturbance, at_step=min(run.done, config.steps - 1))
                 check_ends([soon], config.steps)
                 world_of(run).then(soon).check(config.robot, config.simulator, config.steps)
-            return {"disturbance": as_mapping(given)}
+            return {"disturbance": as_mapping(disturbance)}
 
         return disturbance_from(self._change_live(run_id, checked).changes["disturbance"])
 

@@ -114,7 +114,7 @@ class RunQueue:
 
     def _check_room_for(self, runs: Sequence[Run], free: int) -> None:
         kind = self._class_of(runs[-1].id)
-        alike = sum(self._class_of(one) == kind for one in self._runs)
+        alike = sum(self._class_of(run_id) == kind for run_id in self._runs)
         most = _PLACES[kind]
         if alike + len(runs) > most + free:
             raise Busy(
@@ -176,14 +176,16 @@ class RunQueue:
         first = ready[0]
         if self._owner_of(first.id) is None:
             return self._runs.pop(first.id)
-        owned = [(one, run) for run in ready if (one := self._owner_of(run.id)) is not None]
+        owned = [(owner, run) for run in ready if (owner := self._owner_of(run.id)) is not None]
         owner, run = min(owned, key=lambda pair: self._turns_of(pair[0]))
         for name in (owner.name, _group_key(owner)):
             self._turns[name] = self._turns.get(name, 0) + 1
         if owner.is_guest:  # only theirs wait
             return self._runs.pop(run.id)
         places = {run.id: first, first.id: run}
-        self._runs = {one.id: one for one in (places.get(i, r) for i, r in self._runs.items())}
+        self._runs = {
+            owner.id: owner for owner in (places.get(i, r) for i, r in self._runs.items())
+        }
         return self._runs.pop(run.id)
 
     def _turns_of(self, owner: Owner) -> tuple[int, int]:
@@ -204,23 +206,27 @@ class RunQueue:
         return self._positions().get(run_id) if run_id in self._runs else None
 
     def _positions(self) -> dict[str, int]:
-        return {one: number for number, one in enumerate(self._order(list(self._runs)), start=1)}
+        return {
+            run_id: number for number, run_id in enumerate(self._order(list(self._runs)), start=1)
+        }
 
     def _order(self, ids: Sequence[str]) -> list[str]:
         """Return ids in the order in which runs are started if none is added."""
-        others = [one for one in ids if self._class_of(one) != "guest"]
-        owners = {one: owner for one in ids if (owner := self._owner_of(one)) and owner.is_guest}
+        first = [run_id for run_id in ids if self._class_of(run_id) != "guest"]
+        owners = {
+            run_id: owner for run_id in ids if (owner := self._owner_of(run_id)) and owner.is_guest
+        }
         ahead: Counter[str] = Counter()
         own_turns: dict[str, int] = {}
         for run_id, owner in owners.items():
             own_turns[run_id] = self._turns_of(owner)[1] + ahead[owner.name]
             ahead[owner.name] += 1
         places: dict[str, tuple[int, int]] = {}
-        for run_id in sorted(owners, key=lambda one: own_turns[one]):
+        for run_id in sorted(owners, key=lambda owned: own_turns[owned]):
             group = _group_key(owners[run_id])
             places[run_id] = self._turns.get(group, 0) + ahead[group], own_turns[run_id]
             ahead[group] += 1
-        return [*others, *sorted(owners, key=lambda one: places[one])]
+        return [*first, *sorted(owners, key=lambda owned: places[owned])]
 
     def interrupt(self, reason: str) -> None:
         """Set all queued runs to `interrupted`, which can be resumed, and empty the queue."""
@@ -237,7 +243,7 @@ class RunQueue:
     def stop(self, run: Run) -> Run:
         """Stop a queued run and the queued trainings that were created for it."""
         stopped = self._drop(run, "stopped", None)
-        for training in [one for one in self._runs.values() if one.id in run.waiting_for]:
+        for training in [queued for queued in self._runs.values() if queued.id in run.waiting_for]:
             self._drop(training, "stopped", f"Stopped together with race {run.id}.")
         return stopped
 
@@ -245,7 +251,9 @@ class RunQueue:
         """Resolve dependencies on an ended run: release its dependents, or end them as it ended."""
         for run in [run for run in self._runs.values() if ended.id in run.waiting_for]:
             if ended.state == "finished":
-                remaining = tuple(one for one in run.waiting_for if one != ended.id)
+                remaining = tuple(
+                    training_id for training_id in run.waiting_for if training_id != ended.id
+                )
                 # If the write fails, the run still waits, so that it is retried.
                 self._runs[run.id] = self._store.update(run.id, waiting_for=remaining)
                 self._publish(self._runs[run.id], self.position(run.id))

@@ -179,16 +179,16 @@ class BranchStart:
                 f"branch_from.step must be from 0 to {last:,}, not {step:,}: race {race_id} has "
                 f"taken {taken:,} of {config.steps:,} steps, and at least one must be left"
             )
-        for one in self.disturbances:
-            if one.at_step < step:
+        for disturbance in self.disturbances:
+            if disturbance.at_step < step:
                 raise InvalidInput(
-                    f"{one.kind}: at_step must be at least {step:,}, where the race branches, not "
-                    f"{one.at_step:,}"
+                    f"{disturbance.kind}: at_step must be at least {step:,}, where the race "
+                    f"branches, not {disturbance.at_step:,}"
                 )
         check_ends(self.disturbances, config.steps)
         world = config.world
-        for one in sorted(self.disturbances, key=lambda one: one.at_step):
-            world = world.then(one)
+        for disturbance in sorted(self.disturbances, key=lambda disturbance: disturbance.at_step):
+            world = world.then(disturbance)
         for training_id in filter(None, original.lane_training_ids):
             load_table(store, training_id)
         branch = Run(

@@ -55,7 +55,7 @@ class Turns:
         """
         ticket = (not is_operator, next(self._numbers))
         with self._changed:
-            if sum(one[0] == ticket[0] for one in self._waiting) >= self._max_waiting:
+            if sum(waiting[0] == ticket[0] for waiting in self._waiting) >= self._max_waiting:
                 waiting = f"{self._max_waiting} {self._what} are waiting"
                 raise Busy(f"{waiting}; ask again later", 2)
             self._waiting.append(ticket)

@@ -80,13 +80,15 @@ def _train(task: TrainingTask, control: JobControl) -> None:
     learner = build_learner(config, task.table, threads=0)
     walker, rest_qpos = learner.walker, _pose(learner.walker)
     control.keep_pace(config.pace, config.robot.step_s)
-    made = ()
+    changes = ()
     if task.checkpoint is not None:
         restore(learner, task.checkpoint)
-        made = task.checkpoint.meta["changes"]
-    control.disturb = lambda given: as_mapping(learner.disturb(disturbance_from(given), config))
+        changes = task.checkpoint.meta["changes"]
+    control.disturb = lambda document: as_mapping(
+        learner.disturb(disturbance_from(document), config)
+    )
     learner.logged, control.take_transitions = [], learner.take_transitions
-    control.restore_changes(made, task.changes, learner.step, walker.agent)
+    control.restore_changes(changes, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))
     control.checkpoint_regularly(lambda: Checkpointed(_saved(learner, task, control), learner.step))
     result = None

@@ -209,10 +209,12 @@ class ConnectionTable:
 
     def _evict_for(self, count: int) -> bool:
         """Evict from the address with the most connections, for an address that has `count`."""
-        heaviest = max(self._addresses.values(), key=lambda one: one.count if one.idle else 0)
+        heaviest = max(
+            self._addresses.values(), key=lambda address: address.count if address.idle else 0
+        )
         if heaviest.idle and heaviest.count >= count:
             return self._evict_from(heaviest)
-        heaviest = max(self._addresses.values(), key=lambda one: one.count)
+        heaviest = max(self._addresses.values(), key=lambda address: address.count)
         # Only if the newcomer still has fewer afterwards; else the two would evict each other.
         return heaviest.count > count + 1 and self._evict_from(heaviest)
 

@@ -114,7 +114,9 @@ class FairSemaphore:
                 del self._queues[client]
 
     def _next_client(self) -> str | None:
-        return next((one for one in self._queues if self._held[one] < self._per_client), None)
+        return next(
+            (client for client in self._queues if self._held[client] < self._per_client), None
+        )
 
     def _take(self, client: str) -> None:
         self._free -= 1
@@ -122,15 +124,15 @@ class FairSemaphore:
 
     def _drop_departed(self, queue: deque[_Waiter]) -> bool:
         """Remove the waiters that have left from a queue; return whether there were any."""
-        kept = []
+        present = []
         for waiter in queue:
             if waiter.has_left():
                 _refuse(waiter, "left")
             elif not waiter.admitted.done():
-                kept.append(waiter)
-        is_shorter = len(kept) < len(queue)
+                present.append(waiter)
+        is_shorter = len(present) < len(queue)
         queue.clear()
-        queue.extend(kept)
+        queue.extend(present)
         return is_shorter
 
 

@@ -116,10 +116,10 @@ def listen(settings: Settings, table: ConnectionTable) -> Listener:
         InvalidInput: if the host is unknown, or the port cannot be bound.
     """
     try:
-        found = socket.getaddrinfo(
+        addresses = socket.getaddrinfo(
             settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )
-        family, kind, protocol, _, address = found[0]
+        family, kind, protocol, _, address = addresses[0]
         listener = Listener(family, kind, protocol, table)
     except OSError as error:
         raise InvalidInput(

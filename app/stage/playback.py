@@ -118,11 +118,11 @@ class StoredReplay(Replay):
         run: Run,
         show: RaceShow | PracticeShow,
         ghost: "StoredReplay | None" = None,
-        held: "_HeldRecordings | None" = None,
+        recordings: "_HeldRecordings | None" = None,
     ) -> None:
         label = RunLabel(run.id, run.name, playing=True, replay=True, outcome=run.state)
         super().__init__(show, label, ghost, is_complete=run.state not in NOT_ENDED)
-        self.run, self.stored_ghost, self._held = run, ghost, held
+        self.run, self.stored_ghost, self._held = run, ghost, recordings
 
     @property
     def version(self) -> str:
@@ -132,8 +132,8 @@ class StoredReplay(Replay):
     @property
     def size(self) -> int:
         """Approximate size of its recordings in memory [bytes], as far as they were read."""
-        own = _RUNNING_BYTES if self._held is None else self._held.size
-        return own + (self.stored_ghost.size if self.stored_ghost else 0)
+        size = _RUNNING_BYTES if self._held is None else self._held.size
+        return size + (self.stored_ghost.size if self.stored_ghost else 0)
 
 
 class _HeldRecordings:
@@ -210,12 +210,14 @@ class Replays:
             if replay is None or replay.version != _version_of(run, ghost):
                 replay = self._replay(run, clock, self._replay(ghost, clock) if ghost else None)
                 self._kept[key] = replay
-        missing = [one.run for one in (replay, replay.stored_ghost) if one and not one.recorded]
+        missing = [
+            shown.run for shown in (replay, replay.stored_ghost) if shown and not shown.recorded
+        ]
         with self._lock:
             # Its size is known once it was read.
             self._kept[key] = replay
-        for one in missing:
-            raise Conflict(f"{one.kind} {one.id} is {one.state} and has no recording", one.state)
+        for run in missing:
+            raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
         return replay
 
     def _runs(self, run_id: str, ghost_id: str | None) -> tuple[Run, Run | None]:
@@ -230,9 +232,9 @@ class Replays:
         if run.state in NOT_ENDED:
             show = show_of(run, self._store, self._recordings, clock, world=lambda: world)
             return StoredReplay(run, show, ghost)
-        held = _HeldRecordings(self._recordings)
-        show = show_of(run, self._store, held, clock, world=lambda: world)
-        return StoredReplay(run, show, ghost, held)
+        recordings = _HeldRecordings(self._recordings)
+        show = show_of(run, self._store, recordings, clock, world=lambda: world)
+        return StoredReplay(run, show, ghost, recordings)
 
 
 def _check_ghost(run: Run, ghost: Run) -> None:
@@ -252,8 +254,8 @@ def _check_ghost(run: Run, ghost: Run) -> None:
 
 def _version_of(run: Run, ghost: Run | None) -> str:
     runs = [
-        [one.id, one.created_at, one.state, one.ended_at, one.name, one.changes]
-        for one in (run, ghost)
-        if one
+        [shown.id, shown.created_at, shown.state, shown.ended_at, shown.name, shown.changes]
+        for shown in (run, ghost)
+        if shown
     ]
     return json.dumps(runs, default=str)

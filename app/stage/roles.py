@@ -45,9 +45,9 @@ class Roles:
         is_open = bool(session_id) and self._sessions.is_open(session_id)
         return "operator" if is_open else "spectator"
 
-    def is_token(self, given: str) -> bool:
+    def is_token(self, text: str) -> bool:
         """Whether this is the token."""
-        return self._token is not None and _equal_in_constant_time(given, self._token)
+        return self._token is not None and _equal_in_constant_time(text, self._token)
 
     def open_session(self) -> str:
         """Open the session of an operator, and return its id; "" if no token is needed.
@@ -58,7 +58,7 @@ class Roles:
         return "" if self._sessions is None else self._sessions.open()
 
 
-def _equal_in_constant_time(one: str, other: str) -> bool:
+def _equal_in_constant_time(first: str, other: str) -> bool:
     """Compare in constant time, against timing attacks; by hash, which hides the lengths, too."""
-    hashes = [hashlib.sha256(text.encode("utf-8", "surrogateescape")) for text in (one, other)]
+    hashes = [hashlib.sha256(text.encode("utf-8", "surrogateescape")) for text in (first, other)]
     return hmac.compare_digest(*(text_hash.digest() for text_hash in hashes))

@@ -100,8 +100,8 @@ class Stage:
         store, is_public = self._store, self._store.is_public
         newest = store.list(limit=_RECENT_RUNS, condition=is_public).runs
         interrupted = store.list(state="interrupted", limit=_RECENT_RUNS, condition=is_public).runs
-        known = {run.id: run for run in (*newest, *interrupted) if run.kind in WALKS}
-        by_end = sorted(known.values(), key=_last_activity, reverse=True)
+        runs = {run.id: run for run in (*newest, *interrupted) if run.kind in WALKS}
+        by_end = sorted(runs.values(), key=_last_activity, reverse=True)
         last = [
             run
             for run in by_end

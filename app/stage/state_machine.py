@@ -111,7 +111,9 @@ class StageState:
 
     def change(self, run: StagedRun) -> "StageState":
         """Return the state after a run of the playlist has changed its own."""
-        changed = _to_be_shown(tuple(run if run.id == one.id else one for one in self.playlist))
+        changed = _to_be_shown(
+            tuple(run if run.id == staged.id else staged for staged in self.playlist)
+        )
         if changed == self.playlist:
             return self
         state = replace(self, playlist=changed)

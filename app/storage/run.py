@@ -171,7 +171,9 @@ def ranking_distance_m(result: Result | None) -> float | None:
         distance_m = result.distance_m
     elif isinstance(result, RaceResult):
         figures = [lane.clocks.paper for lane in result.lanes]
-        distance_m = next((one.finished_distance_m for one in figures if one.rank == 1), None)
+        distance_m = next(
+            (figure.finished_distance_m for figure in figures if figure.rank == 1), None
+        )
     return distance_m if distance_m is not None and math.isfinite(distance_m) else None
 
 

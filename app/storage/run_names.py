@@ -39,9 +39,9 @@ def is_named(run: Run) -> bool:
     """Return whether a run has another name than those made of its config, here or earlier."""
     config = run.config
     if isinstance(config, TrainingConfig):
-        made = training_name(config, is_continued=run.continued_from is not None)
+        name = training_name(config, is_continued=run.continued_from is not None)
         earlier = f"{whole(config.steps)} steps: {config.resolved_gait.title}"
-        return run.name not in (made, earlier)
+        return run.name not in (name, earlier)
     if (kind := added_kind(run.kind)) is not None:
         return not kind.has_made_name(run)
     if config.branch_from is not None:
@@ -56,5 +56,5 @@ def _branch_end(step: int) -> str:
 
 def _world_name(problem: WalkingProblem) -> str:
     """Return `, ice` for a named world in which something happens; else nothing."""
-    titles = [one.title.lower() for one in WORLDS.values() if one.world == problem.world]
+    titles = [named.title.lower() for named in WORLDS.values() if named.world == problem.world]
     return "".join(f", {title}" for title in titles if problem.world.disturbances)

@@ -60,7 +60,7 @@ class StoredRobot(Record):
 
 def distinct_name(name: str, taken: Collection[str]) -> str:
     """Return a name that is not taken, nor that of a robot which is built in: `Rex`, `Rex 2`."""
-    used = {one.casefold() for one in (*taken, *CREATURES)}
+    used = {used_name.casefold() for used_name in (*taken, *CREATURES)}
     number, distinct = 1, name[:MAX_NAME]
     while distinct.casefold() in used:
         number += 1

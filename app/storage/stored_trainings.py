@@ -84,8 +84,8 @@ class GrowingTraining:
             return
         for number in range(done // TRANSITIONS_PER_FILE, -(-end // TRANSITIONS_PER_FILE)):
             first = number * TRANSITIONS_PER_FILE
-            part = self.log.part(first, min(end, first + TRANSITIONS_PER_FILE))
-            self._put(transitions_file(number), transition_arrays(part))
+            transitions_ = self.log.part(first, min(end, first + TRANSITIONS_PER_FILE))
+            self._put(transitions_file(number), transition_arrays(transitions_))
         self._stored_steps = end
 
     def _put(self, name: str, arrays: Arrays) -> None:
@@ -124,10 +124,10 @@ def read_log(store: RunStore, run_id: str) -> TransitionLog | None:
     log, number = TransitionLog(), 0
     while (arrays := read_arrays(store, run_id, transitions_file(number))) is not None:
         with decoding(f"{transitions_file(number)} of run {run_id}"):
-            part = transitions(arrays)
-        if part.first != len(log):
+            logged = transitions(arrays)
+        if logged.first != len(log):
             break  # written before the training resumed from an earlier step
-        log.extend(part)
+        log.extend(logged)
         number += 1
     return log if len(log) else None
 

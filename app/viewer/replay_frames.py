@@ -109,8 +109,8 @@ class ReplayFrames:
             InvalidInput, Conflict: see `Replays.get`.
         """
         version = self._replays.version(run_id, ghost_id)
-        if (kept := self._segments.get((version, clock, level, number))) is not None:
-            return kept
+        if (cached := self._segments.get((version, clock, level, number))) is not None:
+            return cached
         replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
         try:
@@ -119,8 +119,8 @@ class ReplayFrames:
             raise NotFound(str(error)) from error
         with self._encoding():
             # Another request for it may have been encoded while this one waited.
-            if (kept := self._segments.get(key)) is not None:
-                return kept
+            if (cached := self._segments.get(key)) is not None:
+                return cached
             encoded = encode_frames(replay, times_s, self._stopping.check)
             if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
                 self._segments.put(key, encoded)

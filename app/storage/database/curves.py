@@ -48,8 +48,8 @@ class Curves:
         """Insert rows within a transaction, for steps that the run does not have yet."""
         # In parts, since an import may have very many.
         for first in range(0, len(rows), _ROWS_AT_ONCE):
-            part = rows[first : first + _ROWS_AT_ONCE]
-            connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in part])
+            chunk = rows[first : first + _ROWS_AT_ONCE]
+            connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in chunk])
 
     def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
@@ -87,9 +87,9 @@ class Curves:
         )
         from_last = numbered.c.total - numbered.c.number
         stride = (numbered.c.total + most - 1) // most
-        kept = select(numbered).where(from_last % stride == 0).order_by(numbered.c.step)
+        thinned = select(numbered).where(from_last % stride == 0).order_by(numbered.c.step)
         curves: dict[str, list[tuple[int, float]]] = {}
-        for row in self._database.read(lambda connection: fetch_rows(connection, kept)):
+        for row in self._database.read(lambda connection: fetch_rows(connection, thinned)):
             point = (row["step"], _number(row["distance_m"]))
             curves.setdefault(row["run_id"], []).append(point)
         return curves

@@ -78,11 +78,11 @@ def fetch_page(connection: Connection, listing: Listing) -> RowPage:
     query = query.order_by(RUNS.c.id.asc() if is_oldest_first else RUNS.c.id.desc())
     if listing.cursor is not None:
         query = query.where(_is_after_cursor(connection, listing.sort, key, listing.cursor))
-    found = fetch_rows(connection, query)
-    rows = [{k: v for k, v in row.items() if k != _KEY} for row in found[: listing.limit]]
-    if len(found) <= listing.limit:
+    rows_and_next = fetch_rows(connection, query)
+    rows = [{k: v for k, v in row.items() if k != _KEY} for row in rows_and_next[: listing.limit]]
+    if len(rows_and_next) <= listing.limit:
         return RowPage(rows, None)
-    last = found[listing.limit - 1]
+    last = rows_and_next[listing.limit - 1]
     cursor = public_id(last["id"])
     return RowPage(rows, cursor if key is None else _encode_cursor(last[_KEY], cursor))
 

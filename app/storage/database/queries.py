@@ -106,7 +106,7 @@ def _stored_id(connection: Connection, run_id: str) -> bytes | None:
     if not run_id.startswith("damaged-"):
         return None
     stored = connection.execute(select(type_coerce(RUNS.c.id, String))).scalars()
-    return next((_bytes(one) for one in stored if public_id(one) == run_id), None)
+    return next((_bytes(stored_id) for stored_id in stored if public_id(stored_id) == run_id), None)
 
 
 def _bytes(stored: object) -> bytes:

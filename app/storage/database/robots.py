@@ -94,16 +94,18 @@ class RobotStore:
         """
         order = ROBOTS.c.created_at, ROBOTS.c.id
         robots = read_rows(self._database, ROBOTS, _decode, *order).sound
-        return [one for one in robots if hidden or not one.hidden]
+        return [robot for robot in robots if hidden or not robot.hidden]
 
     def readable(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
         """Return those of `stored` whose documents can be read; others are logged."""
         stored = self.stored(hidden=hidden)
         damaged = damaged_robots(stored)
-        for one in stored:
-            if one.id in damaged:
-                _logger.warning("robot %s (%s) is left out: %s", one.id, one.name, damaged[one.id])
-        return [one for one in stored if one.id not in damaged]
+        for robot in stored:
+            if robot.id in damaged:
+                _logger.warning(
+                    "robot %s (%s) is left out: %s", robot.id, robot.name, damaged[robot.id]
+                )
+        return [robot for robot in stored if robot.id not in damaged]
 
     def get(self, robot_id: str) -> StoredRobot:
         """Return a stored robot.
@@ -117,7 +119,9 @@ class RobotStore:
         """Return the robot of this id or name, without regard to case; None if there is none."""
         robots = self.stored(hidden=True)
         wanted = text.casefold()
-        return next((one for one in robots if wanted in (one.id, one.name.casefold())), None)
+        return next(
+            (robot for robot in robots if wanted in (robot.id, robot.name.casefold())), None
+        )
 
     def document(self, robot_id: str) -> bytes:
         """Return the document of a stored robot.
@@ -187,7 +191,7 @@ class RobotStore:
             return
         with self.lock:
             names, new = self._names(), dict[str, tuple[StoredRobot, bytes]]()
-            ids = {one.id for one in self.stored(hidden=True)}
+            ids = {robot.id for robot in self.stored(hidden=True)}
             for robot, document in robots:
                 if robot.id not in (*ids, *new):
                     named = replace(robot, name=distinct_name(robot.name, names))
@@ -236,7 +240,7 @@ class RobotStore:
         count = connection.execute(select(func.count()).select_from(ROBOTS)).scalar_one()
         if count + len(robots) > MAX_ROBOTS:
             raise StorageFull(f"at most {MAX_ROBOTS} robots are stored; delete some that none use")
-        put_rows(connection, ROBOTS, [_encode(one) for one in robots])
+        put_rows(connection, ROBOTS, [_encode(robot) for robot in robots])
 
     def check(self, connection: Connection, robots: Iterable[Robot]) -> None:
         """Check within a transaction that those of some robots that are stored ones are here.
@@ -328,9 +332,9 @@ class RobotStore:
             name = rows.sound[0].name if rows.sound else robot_id
             is_hidden = bool(rows.sound) and rows.sound[0].hidden
             for noun, count in users.items():
-                told = f"a {noun} uses" if count == 1 else f"{count:,} {noun}s use"
+                counted_users = f"a {noun} uses" if count == 1 else f"{count:,} {noun}s use"
                 raise Conflict(
-                    f"{told} {name}, and could not be shown without it; hide it instead, "
+                    f"{counted_users} {name}, and could not be shown without it; hide it instead, "
                     f"or delete {f'that {noun}' if count == 1 else f'those {noun}s'} first",
                     "hidden" if is_hidden else "used",
                 )
@@ -372,7 +376,7 @@ class RobotStore:
 
     def _names(self, robot_id: str | None = None) -> list[str]:
         """Return the names of all robots, or of all others."""
-        return [one.name for one in self.stored(hidden=True) if one.id != robot_id]
+        return [robot.name for robot in self.stored(hidden=True) if robot.id != robot_id]
 
     def _users_of(self, connection: Connection, robot_id: str) -> dict[str, int]:
         """Return the numbers, by noun, of what names a robot; only of some."""
@@ -392,11 +396,11 @@ class RobotStore:
 def damaged_robots(robots: Iterable[StoredRobot]) -> Mapping[str, str]:
     """Return, by id, why the documents of some robots cannot be read; those that can are absent."""
     reasons = {}
-    for one in robots:
+    for robot in robots:
         try:
-            one.robot  # noqa: B018 - reads the document
+            robot.robot  # noqa: B018 - reads the document
         except HexapodError as error:
-            reasons[one.id] = str(error)
+            reasons[robot.id] = str(error)
     return reasons
 
 

@@ -93,10 +93,10 @@ def _decode(row: Mapping[str, Any]) -> Run:
     if public_id(row["id"]) != row["id"]:
         raise ValueError("its id is malformed")
     if (kind := run_kinds().get(row["kind"])) is None:
-        known = ", ".join(run_kinds())
+        kinds = ", ".join(run_kinds())
         name = str(row["kind"])[:40]
         raise ValueError(
-            f"its kind, {name}, is none of {known}; if a feature adds it, put that feature back "
+            f"its kind, {name}, is none of {kinds}; if a feature adds it, put that feature back "
             "before you delete the run"
         )
     values = {k: v for k, v in row.items() if k not in ("config", "result")}

@@ -163,7 +163,7 @@ class RunStore:
         """
         stored: list[dict[str, StoredFile]] = [{} for _ in imported]
         was_submitted = False
-        robots = [one for _, content in imported for one in content.robots]
+        robots = [robot for _, content in imported for robot in content.robots]
 
         with self.robots.adding(robots) as new_robots:
 
@@ -187,7 +187,7 @@ class RunStore:
                 # After an outage the transaction may have been committed with its reply lost. The
                 # files stay then; if they are orphans, the next start deletes them.
                 if not (was_submitted and isinstance(error, StorageFailed)):
-                    self.files.remove(*(one.file for files in stored for one in files.values()))
+                    self.files.remove(*(file.file for files in stored for file in files.values()))
                 raise
 
     def _insert(

@@ -103,12 +103,12 @@ def read_rows(
     """
     database.decoders[table.name] = decode
     rows = database.read(lambda connection: rows_in(connection, table, decode, *order, where=where))
-    unlogged = [one for one in map(str, rows.damaged) if one not in database.logged_damage]
+    unlogged = [reason for reason in map(str, rows.damaged) if reason not in database.logged_damage]
     if unlogged and len(database.logged_damage) < _MAX_LOGGED:
         database.logged_damage.update(unlogged)
         # A record of its own for each table, of which the log writes only so many alike.
-        told = f"{counted(len(unlogged), 'damaged row')} of {table.name} left out: %s"
-        _logger.warning(told, "; ".join(unlogged[:MAX_NAMED]))
+        message = f"{counted(len(unlogged), 'damaged row')} of {table.name} left out: %s"
+        _logger.warning(message, "; ".join(unlogged[:MAX_NAMED]))
     return rows
 
 
@@ -257,5 +257,5 @@ def _key(table: Table, row: Any) -> str:
 
 
 def _reason(error: Exception) -> str:
-    told = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
-    return visible(told)[:_MAX_REASON]
+    reason = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+    return visible(reason)[:_MAX_REASON]
