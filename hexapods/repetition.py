@@ -33,7 +33,7 @@ from hexapods.domain.records import check_kept
 from hexapods.domain.simulator import RewardKind
 from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
-from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
+from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.failures import failed_trials, failures_sentence
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.local_workers import defines_agents
@@ -165,7 +165,7 @@ class Experiment:
 
 
 def experiment(
-    name: ExperimentName,
+    name: str,
     *,
     folder: str | os.PathLike[str] | None = None,
     workers: int | None = None,
@@ -192,7 +192,8 @@ def experiment(
     is imported again for them: there, call it under `if __name__ == "__main__":`.
 
     Args:
-        name: `table1`, `figure4`, `sweep`, `league` or `recovery`; see `ExperimentConfig`.
+        name: of a preset: `table1`, `figure4`, `sweep`, `league`, `recovery`, `groups` or
+            `bodies`.
         folder: keeps each result as soon as it is there; called again with the same folder and
             arguments, the experiment goes on where it ended. None keeps nothing.
         workers: number of processes; None for one per core.

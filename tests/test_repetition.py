@@ -114,6 +114,6 @@ def test_only_a_program_that_defines_agents_needs_a_guard(
 
 def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(hx.UnknownName, match="unknown experiment 'swep'; choose one of: table1"):
-        hx.experiment("swep")  # type: ignore[arg-type]
+        hx.experiment("swep")
     with pytest.raises(hx.UnknownName, match="unknown field of sweep 'gait'"):
         hx.experiment("sweep", gait=["left-right-origin"])

@@ -1,7 +1,8 @@
 """Experiments over many seeds, the paper's and in other worlds, and their evaluation.
 
-- `config`: the experiments' parameters; `names`: what they are called; `plan`: the grid of settings
-  and their trials; `trial`: one trial (practice, walk, race); `result`: its result.
+- `presets`: the experiments as data; `config`: their parameters; `names`: what they are called;
+  `plan`: the grid of settings and their trials; `trial`: one trial (practice, walk, race);
+  `result`: its result.
 - `engine`: runs trials on workers; `local_workers`: processes on this machine, `cluster`: those,
   or a Dask cluster; `worker`: the code that runs on a worker, and the check that all machines have
   the same versions.
@@ -14,5 +15,6 @@
   `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`, `labels` and
   `failures`: numbers, names and failed trials as text.
 
-To add a claim about an experiment: a module in `claims`, and its sentence in `narrative`.
+To add an experiment: a value in `presets`. To add a claim about one: a module in
+`claims`, and its sentence in `narrative`.
 """

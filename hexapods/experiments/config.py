@@ -3,7 +3,7 @@
 import contextlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal, get_args
+from typing import Annotated, Any, ClassVar
 
 from annotated_types import Ge, Le
 
@@ -12,7 +12,7 @@ from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import PAPER_GAITS, AnyGait
 from hexapods.domain.observation import PAPER_OBSERVATIONS, Observation
 from hexapods.domain.records import Record
-from hexapods.domain.robot import AnyRobot, Robot, robot
+from hexapods.domain.robot import AnyRobot, Robot
 from hexapods.domain.settings import (
     REQUIRED,
     DeclaredSetting,
@@ -23,6 +23,7 @@ from hexapods.domain.settings import (
 )
 from hexapods.domain.short_repr import short_repr
 from hexapods.domain.world import lasting_world
+from hexapods.experiments.presets import GRID, Preset, preset_of
 from hexapods.runs.config import (
     Divisions,
     GridSide,
@@ -36,12 +37,9 @@ from hexapods.runs.config import (
     agent_settings,
 )
 
-ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery", "groups", "bodies"]
-EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
 MAX_SEEDS = 10_000
 MAX_TRIALS = 200_000
 MAX_WORKERS = 512
-FIGURE4_BLOCKS = 8
 
 SUMMARY = "summary.json"
 """File of a report: statistics and claims computed from the trials so far."""
@@ -51,28 +49,18 @@ REPORT = "report.html"
 TRIALS_TABLE = "trials.csv"
 """Every trial, with its result."""
 
-GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
-"""Fields that a sweep varies beside agent, gait, observation, robot and the agents' settings;
-table1 and figure4 keep them at the paper's values."""
-DISTURBED: tuple[ExperimentName, ...] = ("league", "recovery", "groups", "bodies")
-"""Experiments with learning curves beside references that search, in worlds or with bodies of any
-kind; robots may differ by seed."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class ExperimentConfig(Record):
     """Config of an experiment. `experiment_config` adds the defaults of the experiment.
 
     Attributes:
-        experiment: `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid;
-            `league`: learners and searchers in several worlds; `recovery`: learners to which
-            something happens in the middle of their practice; `groups`: gaits that move legs in
-            other groups; `bodies`: learners and creatures, each in the gait that suits it.
+        experiment: name of its preset, see `presets`.
         seeds: number of seeds for each setting of an agent that learns.
         seed: root seed, from which the seeds of all trials are spawned.
-        agents: the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
-        gaits, observations, robots: every combination is a setting; without gaits, as in
-            `bodies`, each robot has the gait that suits it.
+        agents: the learners, and look-ahead agents beside those that are always tried.
+        gaits, observations, robots: every combination is a setting; without gaits, each
+            robot has the gait that suits it.
         simulator: simulator of all trials.
         steps, steps_per_episode, divisions, grid_side_m: values of these fields of a training;
             every combination is a setting.
@@ -101,7 +89,7 @@ class ExperimentConfig(Record):
     }
     """Options of the command line, by field; see `option_of`."""
 
-    experiment: ExperimentName
+    experiment: str
     seeds: Annotated[
         int,
         Ge(1),
@@ -128,18 +116,22 @@ class ExperimentConfig(Record):
     reward: Reward = TrainingConfig.reward
 
     def __post_init__(self) -> None:
-        if self.experiment not in EXPERIMENTS:
-            raise UnknownName("experiment", self.experiment, EXPERIMENTS)
+        preset = self.preset
         for setting in declared_fields(type(self)).values():  # type: ignore[arg-type]  # mypy: no hash
             setting.check(getattr(self, setting.name))
         for world in self.worlds:
             lasting_world(world)
         lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
         for name, values in lists.items():
-            if not values and (name, self.experiment) != ("gaits", "bodies"):
+            if not values and not (name == "gaits" and preset.has_own_gaits):
                 raise InvalidInput(f"{name} must name at least one")
             if any(value in values[:place] for place, value in enumerate(values)):
                 raise InvalidInput(f"{name} names something twice")
+
+    @property
+    def preset(self) -> Preset:
+        """Preset of the experiment."""
+        return preset_of(self.experiment)
 
     @classmethod
     def option_of(cls, field: str) -> str:
@@ -148,84 +140,16 @@ class ExperimentConfig(Record):
 
 
 _LIST_FIELDS = ("agents", "gaits", "observations", "robots", "worlds")
-_LEARNERS = (
-    "q-learning",
-    "sarsa-lambda",
-    "dyna-q",
-    "r-max",
-    "posterior-sampling",
-    "linear-model",
-)
-_DISTURBED_DEFAULTS: Mapping[str, Any] = {
-    "gaits": ("left-right-origin", "left-right-vertical"),
-    "observations": ("measured",),
-    "tolerance": 0.03,
-}
-_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
-    "table1": {"steps": (500, 1000), "robots": (robot("stiff"), robot("compliant"))},
-    "figure4": {"steps": (250,), "blocks": FIGURE4_BLOCKS},
-    "sweep": {"observations": ("measured",)},
-    "league": {
-        **_DISTURBED_DEFAULTS,
-        "agents": (*_LEARNERS, "two-step", "informed"),
-        "steps": (250,),
-        "worlds": ("flat", "limp-pair", "slope", "ice"),
-    },
-    "recovery": {
-        **_DISTURBED_DEFAULTS,
-        "agents": ("q-learning", "dyna-q", "linear-model"),
-        "steps": (100,),
-        "worlds": ("limp-pair", "stuck-leg"),
-    },
-    "groups": {
-        "gaits": ("left-right-origin", "left-right-vertical", "tripod"),
-        "observations": ("measured",),
-        "steps": (250,),
-        "steps_per_episode": (25,),
-    },
-    "bodies": {
-        "agents": ("q-learning", "linear-model"),
-        "gaits": (),
-        "observations": ("measured",),
-        "robots": tuple(
-            robot(name)
-            for name in ("stiff", "ant", "crab", "spider", "starfish", "dog", "centipede")
-        ),
-        "steps": (250,),
-        "steps_per_episode": (25,),
-    },
-}
-_IDEAL_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
-    "league": {"tolerance": 0.0, "worlds": ("flat",)},
-    "recovery": {"tolerance": 0.0, "worlds": ("noise",)},
-}
-"""Defaults that differ in the kinematic simulator, which knows no tolerance and few worlds."""
-_COMMON_FIELDS = ("seeds", "seed", "gaits", "observations", "robots", "simulator")
-_DISTURBED_FIELDS = ("agents", "worlds", "tolerance", "steps", "reward")
-_ACCEPTED_FIELDS: Mapping[str, tuple[str, ...]] = {
-    "table1": _COMMON_FIELDS,
-    "figure4": (*_COMMON_FIELDS, "agents"),
-    "sweep": (*_COMMON_FIELDS, "agents", *GRID, "reward"),
-    "league": (*_COMMON_FIELDS, *_DISTURBED_FIELDS),
-    "recovery": (*_COMMON_FIELDS, *_DISTURBED_FIELDS),
-    "groups": (*_COMMON_FIELDS, *_DISTURBED_FIELDS),
-    "bodies": (*(name for name in _COMMON_FIELDS if name != "gaits"), *_DISTURBED_FIELDS),
-}
 
 
-def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
-    """Return the fields that an experiment accepts; a sweep also takes its agents' settings."""
-    return _ACCEPTED_FIELDS[experiment]
-
-
-def default_agents(experiment: ExperimentName) -> list[str]:
+def default_agents(preset: Preset) -> tuple[str, ...]:
     """Return the agents of an experiment if none are given."""
-    return list(_DEFAULTS[experiment].get("agents", ExperimentConfig.agents))
+    return tuple(preset.defaults.get("agents", ExperimentConfig.agents))
 
 
-def compares(experiment: str, agent: str) -> bool:
-    """Whether an experiment compares an agent; a recovery compares learners only."""
-    return experiment != "recovery" or learns(agent)
+def compares(preset: Preset, agent: str) -> bool:
+    """Whether an experiment compares an agent."""
+    return learns(agent) or not preset.is_for_learners
 
 
 def settings_by_name(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
@@ -245,7 +169,7 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     """Create the config of an experiment from given values and the experiment's defaults.
 
     Args:
-        experiment: name of the experiment.
+        experiment: name of the experiment's preset.
         given: values by attribute of `ExperimentConfig`, and lists of values of the agents'
             settings by name; None counts as not given.
 
@@ -253,20 +177,19 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
         UnknownName: if the experiment or a field does not exist.
         InvalidInput: if a value is invalid.
     """
-    if experiment not in EXPERIMENTS:
-        raise UnknownName("experiment", experiment, EXPERIMENTS)
+    preset = preset_of(experiment)
     specified = {name: value for name, value in given.items() if value is not None}
-    defaults: Mapping[str, Any] = _DEFAULTS[experiment]
+    defaults = preset.defaults
     if specified.get("simulator") == "kinematic":
-        defaults = {**defaults, **_IDEAL_DEFAULTS.get(experiment, {})}
-    usual_agents = defaults.get("agents", ExperimentConfig.agents)
-    declared = settings_by_name(specified.get("agents", usual_agents))
-    valid = [*_ACCEPTED_FIELDS[experiment], *(declared if experiment == "sweep" else ())]
+        defaults = {**defaults, **preset.ideal_defaults}
+    agents = specified.get("agents", default_agents(preset))
+    declared = settings_by_name(agents)
+    valid = [*preset.fields, *(declared if preset.takes_settings else ())]
     for name in specified:
         if name not in valid:
             raise UnknownName(f"field of {experiment}", name, valid)
-    for agent in specified.get("agents", usual_agents):
-        if not compares(experiment, agent):
+    for agent in agents:
+        if not compares(preset, agent):
             raise InvalidInput(
                 f"{agent} does not learn, so it does not recover; greedy is there as a "
                 "reference anyway"

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from statistics import fmean, median
 from typing import Any
 
+from hexapods.experiments.presets import REACHED_SHARE
 from hexapods.experiments.published import Published
 from hexapods.experiments.setting_results import SettingResults
 from hexapods.experiments.statistics import (
@@ -18,8 +19,6 @@ from hexapods.experiments.statistics import (
 
 WALKER_SHARE = 0.5
 """Share of greedy's total distance from which a seed counts as a walker."""
-REACHED_SHARE = 0.95
-"""Share of a reference's distance from which a seed counts as having reached that reference."""
 
 
 def measure_against_references(strata: Sequence[SettingResults], seed: int) -> dict[str, Any]:

@@ -8,7 +8,6 @@ from hexapods.agents.appearance import title_of
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.text import MAX_NAME, counted
 from hexapods.experiments.config import (
-    GRID,
     ExperimentConfig,
     default_agents,
     settings_by_name,
@@ -21,20 +20,11 @@ from hexapods.experiments.labels import (
     world_name,
 )
 from hexapods.experiments.plan import Plan
+from hexapods.experiments.presets import GRID
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
 _PLACE = ("gait", "world", "observation", "robot")
-TITLES: Mapping[str, str] = {
-    "table1": "Table 1",
-    "figure4": "Figure 4",
-    "sweep": "Sweep",
-    "league": "League",
-    "recovery": "Recovery",
-    "groups": "Fewer groups learn faster",
-    "bodies": "Bodies",
-}
-"""Title of each experiment."""
 _MAX_VALUES = 6
 _MAX_TITLES = 3
 
@@ -42,18 +32,18 @@ _MAX_TITLES = 3
 def experiment_name(config: ExperimentConfig) -> str:
     """Return a name by what is varied: `α 0.1, 0.3 · 8 seeds`, `League: Q-learning · 8 seeds`."""
     seeds = f" · {counted(config.seeds, 'seed')}"
-    told = _told(config)
-    kind = "" if config.experiment == "sweep" and told else TITLES[config.experiment]
-    name = f"{kind}: {told}" if kind and told else kind or told
+    axes, title = _axes_in_words(config), config.preset.title
+    parts = [axes] if config.preset.takes_settings else [title, *filter(None, [axes])]
+    name = ": ".join(parts)
     return name[: MAX_NAME - len(seeds)] + seeds
 
 
-def _told(config: ExperimentConfig) -> str:
-    """Return what an experiment varies in words; empty where its title tells it."""
-    if config.experiment == "sweep":
+def _axes_in_words(config: ExperimentConfig) -> str:
+    """Return what an experiment varies in words; empty where its title says it."""
+    if config.preset.takes_settings:
         agents = [_agents(config)] if len(config.agents) > 1 else []
         return " × ".join([*agents, *_swept(config)]) or title_of(config.agents[0])
-    has_own = tuple(config.agents) != tuple(default_agents(config.experiment))
+    has_own = tuple(config.agents) != default_agents(config.preset)
     worlds = [] if tuple(config.worlds) == ("flat",) else [world_name(x) for x in config.worlds]
     parts = [
         *([_agents(config)] if has_own else []),

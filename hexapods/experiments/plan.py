@@ -19,7 +19,8 @@ from hexapods.domain.observation import Observation
 from hexapods.domain.robot import Robot
 from hexapods.domain.settings import SettingValues, Value
 from hexapods.domain.world import parse_world
-from hexapods.experiments.config import DISTURBED, GRID, MAX_TRIALS, ExperimentConfig
+from hexapods.experiments.config import MAX_TRIALS, ExperimentConfig
+from hexapods.experiments.presets import GRID
 from hexapods.experiments.trial import TrialConfig
 from hexapods.runs.config import (
     TrainingConfig,
@@ -37,9 +38,9 @@ times."""
 RIVALS = ("greedy", "two-step")
 _GRID_FIELDS = ("divisions", "grid_side_m")
 LEAGUE_STEPS = (25, 50, 100, 150, 250, 500, 1000, 1500, 2000, 3000, 5000, 10_000)
-"""Steps of practice after which the learners of a league are evaluated; and at its end."""
+"""Steps after which learners are evaluated along their practice; and at its end."""
 RECOVERY_STEPS = (0, 1, 25, 50, 100, 150)
-"""Steps after something happened at which the learners of a recovery are evaluated."""
+"""Steps after something happened at which learners are evaluated that recover from it."""
 EARNING_STEPS = 50
 """Number of steps after each of these whose rewards are added up."""
 
@@ -178,7 +179,7 @@ class Plan:
 
     def _trial(self, index: int, seed_number: int) -> Trial:
         # Where the seed draws the robot, all agents walk with the same ones.
-        spawned = 0 if self.config.experiment in DISTURBED else index
+        spawned = 0 if self.config.preset.has_worlds else index
         seed = trial_seed(self.config.seed, spawned, seed_number)
         setting = self.settings[index]
         return Trial(f"{setting.key}#{seed_number}", setting, seed_number, seed)
@@ -194,6 +195,7 @@ def trial_seed(seed: int, setting: int, seed_number: int) -> int:
 
 
 def _settings(config: ExperimentConfig) -> list[TrialSetting]:
+    preset = config.preset
     learners, references, in_one_go, timed = [], [], [], []
     own = {agent: agent_settings(agent) for agent in (*config.agents, *RIVALS)}
     for name in config.settings:
@@ -215,15 +217,15 @@ def _settings(config: ExperimentConfig) -> list[TrialSetting]:
             if learns(agent)
         )
         in_scenario = [_learner(place, agent, config, values) for agent, values in practices]
-        if config.experiment in DISTURBED and (place.walk.world or place.walk.tolerance):
+        if preset.has_worlds and (place.walk.world or place.walk.tolerance):
             references.append(_nominal(_setting(place, "greedy", 0, SettingValues())))
         learners += in_scenario
-        if config.experiment == "figure4":
+        if preset.measure == "blocks":
             in_one_go += [
                 _in_one_go(place, in_blocks.trial, values)
                 for (_, values), in_blocks in zip(practices, in_scenario, strict=True)
             ]
-        if config.experiment == "table1":
+        if preset.is_timed:
             timed.append(_timed(in_scenario[0]))
     # After the blocks, whose seeds depend on their place in this list.
     settings = [*references, *learners, *in_one_go, *timed]
@@ -277,10 +279,9 @@ def _labelled_robots(config: ExperimentConfig) -> list[tuple[str, Robot]]:
 
 
 def _look_ahead_agents(config: ExperimentConfig) -> list[str]:
-    """Return the look-ahead agents; greedy is the reference, and so always included."""
-    if config.experiment == "table1":
-        return list(RIVALS)
-    return ["greedy", *(a for a in config.agents if not learns(a) and a != "greedy")]
+    """Return the look-ahead agents: the references of the preset, then those of the config."""
+    chosen = (agent for agent in config.agents if not learns(agent))
+    return list(dict.fromkeys((*config.preset.references, *chosen)))
 
 
 def _combinations(lists: Mapping[str, Sequence[Any]]) -> list[SettingValues[Value]]:
@@ -323,10 +324,10 @@ def _learner(
     """Return a setting of an agent that practises, as the experiment evaluates it."""
     setting = _setting(place, agent, config.blocks, values)
     training = setting.training
-    if config.experiment in ("league", "groups", "bodies"):
+    if config.preset.measure == "practice":
         points = (*(step for step in LEAGUE_STEPS if step < training.steps), training.steps)
         return replace(setting, trial=replace(setting.trial, evaluations=points))
-    if config.experiment == "recovery":
+    if config.preset.measure == "recovery":
         happens = training.steps
         trial = TrialConfig(
             training=replace(

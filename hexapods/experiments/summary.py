@@ -7,9 +7,9 @@ from itertools import combinations
 from typing import Any
 
 from hexapods.domain.records import to_json
-from hexapods.experiments.claims import CLAIMS_OF
+from hexapods.experiments.claims import CLAIMS
 from hexapods.experiments.claims.judging import judge
-from hexapods.experiments.config import DISTURBED, SUMMARY_FORMAT, ExperimentConfig
+from hexapods.experiments.config import SUMMARY_FORMAT, ExperimentConfig
 from hexapods.experiments.measures import (
     WALKER_SHARE,
     best_known_relative,
@@ -55,16 +55,16 @@ def summarise(
     Returns:
         Plain types, fit for JSON: `trials` (counts; `failed` are all without a distance, also those
         that were set aside), `settings` (one entry per setting), `pooled`
-        (one per setting over its gaits), `curves` (learners of Figure 4, in blocks and in one go),
+        (one per setting over its gaits), `curves` (learners in blocks and in one go),
         `versus` (pairs of learning agents), `timed` (races timed on this machine), `worlds`
-        (agents in the worlds of a league or recovery), and `claims`, `story` and `finding` as
-        text. What cannot be computed yet is None, or empty.
+        (agents along their practice, or after something happened, by world), and `claims`,
+        `story` and `finding` as text. What cannot be computed yet is None, or empty.
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
     walked = [one for one in settings if one.setting.role != "timed"]
     aside = Counter(key.rpartition("#")[0] for key in set_aside or {})
-    is_disturbed = config.experiment in DISTURBED
+    preset = config.preset
     summary: dict[str, Any] = {
         "format": SUMMARY_FORMAT,
         "experiment": config.experiment,
@@ -79,15 +79,17 @@ def summarise(
         "curves": [
             _curve(one, config.seed)
             for one in walked
-            if one.setting.role == "learner" and config.experiment == "figure4"
+            if one.setting.role == "learner" and preset.measure == "blocks"
         ],
-        "versus": [] if is_disturbed else _versus(walked, config.seed),
+        "versus": [] if preset.has_worlds else _versus(walked, config.seed),
         "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
-        "worlds": compare_in_worlds(walked, config.seed, config.experiment) if is_disturbed else [],
+        "worlds": compare_in_worlds(walked, config.seed, preset.reached_share)
+        if preset.has_worlds
+        else [],
     }
-    summary["claims"] = judge(summary, CLAIMS_OF[config.experiment])
-    summary["story"] = narrate(summary)
-    summary["finding"] = find(summary)
+    summary["claims"] = judge(summary, CLAIMS[preset.claims] if preset.claims else ())
+    summary["story"] = narrate(summary, preset)
+    summary["finding"] = find(summary, preset)
     return summary
 
 
@@ -112,14 +114,14 @@ def _setting(one: SettingResults, config: ExperimentConfig, set_aside: int) -> d
         "best_known_m": one.reference.best_known_m,
         **measure_against_references([one], config.seed),
         "elapsed_s": elapsed[0] if elapsed and one.setting.role == "reference" else None,
-        "published": printed if config.experiment == "table1" else None,
+        "published": printed if config.preset.is_published else None,
     }
 
 
 def _pooled(settings: Sequence[SettingResults], config: ExperimentConfig) -> list[dict[str, Any]]:
     """Measure each learner over its gaits, which are the strata of the bootstrap.
 
-    Outside Table 1 also search agents other than greedy: without intervals or shares of seeds,
+    Also search agents other than the references: without intervals or shares of seeds,
     since they have one result per gait, and a gait is not a seed.
     """
     entries = []
@@ -137,7 +139,7 @@ def _pooled(settings: Sequence[SettingResults], config: ExperimentConfig) -> lis
 
 def _is_compared(one: SettingResults, config: ExperimentConfig) -> bool:
     agent = one.setting.training.agent
-    return one.setting.role == "learner" or (config.experiment != "table1" and agent != "greedy")
+    return one.setting.role == "learner" or agent not in config.preset.references
 
 
 def _group_by_gait(settings: Iterable[SettingResults]) -> list[list[SettingResults]]:

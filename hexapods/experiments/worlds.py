@@ -1,4 +1,4 @@
-"""Compare agents in the worlds of a league or a recovery: curves, shares, steps until they walk."""
+"""Compare agents along their practice in worlds: curves, shares, steps until they walk."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -7,34 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from hexapods.experiments.config import ExperimentName
-from hexapods.experiments.measures import REACHED_SHARE, curve_entry, iqm_entry
+from hexapods.experiments.measures import curve_entry, iqm_entry
 from hexapods.experiments.setting_results import SettingResults, setting_fields
 from hexapods.experiments.statistics import Points, iqm_interval, share_at_least
 from hexapods.runs.lane import LaneConfig, PlanningModel, plans_with
 
-EARLIER_SHARE = 0.9
-"""In a recovery and on many bodies, in place of `REACHED_SHARE`."""
 MIN_REFERENCE_M = 0.01
 """A reference that walks less has nothing that one could have a share of."""
 Curves = Sequence[Points]
 """For each evaluation the distance of every seed [m]."""
 
 
-def share_to_reach(experiment: ExperimentName) -> float:
-    """Return the share of a reference's distance to which steps are counted."""
-    return EARLIER_SHARE if experiment in ("recovery", "bodies") else REACHED_SHARE
-
-
 def compare_in_worlds(
-    settings: Sequence[SettingResults], seed: int, experiment: ExperimentName
+    settings: Sequence[SettingResults], seed: int, reached_share: float
 ) -> list[dict[str, Any]]:
     """Return an entry for each agent in each world, with the walks of its references.
 
     Args:
         settings: settings with their results so far; those without any are left out.
         seed: seed of the bootstrap's resampling.
-        experiment: see `share_to_reach`.
+        reached_share: share of a reference's distance to which steps are counted.
 
     Returns:
         Plain types, fit for JSON. Of each agent its distance after the last evaluation, its share
@@ -50,8 +42,11 @@ def compare_in_worlds(
             agent, nominal = one.setting.training.agent, one.setting.trial.plans_with is not None
             name = f"{agent.replace('-', '_')}{'_nominal' if nominal else ''}_m"
             known[name] = iqm_interval((one.total_m,), seed).value
-    share = share_to_reach(experiment)
-    return [_entry(one, references[one.conditions], seed, share) for one in settings if one.total_m]
+    return [
+        _entry(one, references[one.conditions], seed, reached_share)
+        for one in settings
+        if one.total_m
+    ]
 
 
 def _plans_with(one: SettingResults) -> PlanningModel | None:

@@ -1541,7 +1541,7 @@ export interface LaneView {
  * Result of a race, by lane.
  *
  * `recording_sha256` is a hash of all steps without the times of decisions, the same wherever the
- * race is repeated; null if it was raced by an earlier version. `shared_machine`: whether other
+ * race is repeated. `shared_machine`: whether other
  * runs computed beside it, which slows its wall clock.
  */
 export interface RaceResult {
@@ -1626,9 +1626,9 @@ export interface ExperimentView {
  */
 export interface ExperimentConfig {
   /**
-   * `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid; `league`: learners and searchers in several worlds; `recovery`: learners to which something happens in the middle of their practice; `groups`: gaits that move legs in other groups; `bodies`: learners and creatures, each in the gait that suits it.
+   * name of its preset, see `presets`.
    */
-  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery" | "groups" | "bodies";
+  experiment: string;
   /**
    * How often each setting is tried, each time with other random numbers.
    */
@@ -1638,11 +1638,11 @@ export interface ExperimentConfig {
    */
   seed: number;
   /**
-   * the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
+   * the learners, and look-ahead agents beside those that are always tried.
    */
   agents: string[];
   /**
-   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
+   * every combination is a setting; without gaits, each robot has the gait that suits it.
    */
   gaits: (
     | (
@@ -1666,11 +1666,11 @@ export interface ExperimentConfig {
       }
   )[];
   /**
-   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
+   * every combination is a setting; without gaits, each robot has the gait that suits it.
    */
   observations: ("measured" | "commanded" | "planned")[];
   /**
-   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
+   * every combination is a setting; without gaits, each robot has the gait that suits it.
    *
    * Items: A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
    */
@@ -1796,7 +1796,7 @@ export interface ExperimentConfig {
  * Result of an experiment; `files` are those of its report.
  *
  * `shared_machine`: whether other runs computed beside it, which slows what is timed. `finding`:
- * what came of it, in a sentence; empty where its claims say it, and of 0.1.
+ * what came of it, in a sentence; empty where its claims say it.
  */
 export interface ExperimentResult {
   trials: TrialCounts;
@@ -3963,7 +3963,7 @@ export interface SummaryCounts {
  */
 export interface SummaryView {
   format: number;
-  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery" | "groups" | "bodies";
+  experiment: string;
   config: ExperimentConfig;
   versions: {
     [k: string]: string;

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from hexapods.experiments.claims import CLAIMS_OF
+from hexapods.experiments.claims import CLAIMS
 from hexapods.experiments.claims.cases import Case
 
 
@@ -29,7 +29,7 @@ def test_the_best_groups_decide(low: float, high: float, verdict: str) -> None:
         setting("tripod", 0.97, 0.6, low, high),
     ]
     case = Case("measured", "stiff", "", 0, "mujoco", (), settings, (), (), ())
-    (claim,) = CLAIMS_OF["groups"]
+    (claim,) = CLAIMS["groups"]
     finding = claim.find(case)
 
     assert finding is not None
@@ -39,5 +39,5 @@ def test_the_best_groups_decide(low: float, high: float, verdict: str) -> None:
 
 
 def test_without_trials_nothing_is_judged() -> None:
-    (claim,) = CLAIMS_OF["groups"]
+    (claim,) = CLAIMS["groups"]
     assert claim.find(Case("measured", "stiff", "", 0, "mujoco", (), (), (), (), ())) is None

@@ -12,7 +12,7 @@ from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.terminal import RATE_WINDOW_S, discard, progress, show_table, workers_text
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.cluster import ClusterSpec
-from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
+from hexapods.experiments.config import REPORT, ExperimentConfig
 from hexapods.experiments.failures import failures_text
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Trial
@@ -130,13 +130,14 @@ def print_failures(trials: Mapping[str, Any]) -> None:
 def _table(summary: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return head and rows; a league or recovery has no race, but more to be measured against."""
     from hexapods.experiments.names import setting_names  # noqa: PLC0415
+    from hexapods.experiments.presets import preset_of  # noqa: PLC0415
 
     settings = summary["settings"]
     known = {one["key"]: one for one in summary["worlds"]}
     models = {key: one["plans_with"] for key, one in known.items()}
     names = setting_names(settings, summary["parameters"], models)
     rows = [(names[one["key"]], *_distances(one)) for one in settings]
-    if summary["experiment"] not in DISTURBED:
+    if not preset_of(summary["experiment"]).has_worlds:
         head = (*_HEAD, "at time-out m", "of greedy")
         return head, [(*row, *_in_race(one)) for row, one in zip(rows, settings, strict=True)]
     head = (*_HEAD, "of greedy", "of best known")

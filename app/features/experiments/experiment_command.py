@@ -13,11 +13,15 @@ from app.features.experiments.trial_options import (
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import WORLDS
-from hexapods.experiments.config import DISTURBED, ExperimentConfig, experiment_config
+from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.formatting import listed
+from hexapods.experiments.presets import PRESETS
 from hexapods.runs.config import TrainingConfig
 
-_NAMES = ("table1", "figure4", *DISTURBED)
+
+def _names() -> list[str]:
+    """Return the presets that this command starts; others have a command of their own."""
+    return [name for name, preset in PRESETS.items() if preset.command == f"experiment {name}"]
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
@@ -25,7 +29,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser = commands.add_parser(
         "experiment", help="repeat experiments over many seeds", description=__doc__
     )
-    parser.add_argument("experiment", choices=_NAMES, help=listed(_NAMES, "or"))
+    parser.add_argument("experiment", choices=_names(), help=listed(_names(), "or"))
     add_trial_options(
         parser, observations="both", robots="stiff,compliant for table1, stiff for figure4"
     )
@@ -78,20 +82,18 @@ def config_from(options: argparse.Namespace) -> ExperimentConfig:
     Raises:
         HexapodError: if the options are not valid.
     """
-    agents = agents_from(options.agent)
-    if agents is not None and options.experiment == "table1":
-        raise InvalidInput("table1 has the paper's agents; --agent is for the other experiments")
     given = {
-        "agents": agents,
+        "agents": agents_from(options.agent),
         "worlds": _worlds_from(options.world),
         "tolerance": options.tolerance,
         "steps": options.steps,
         "reward": options.reward,
     }
-    if options.experiment not in DISTURBED:
-        for name in ("world", "tolerance", "steps", "reward"):
-            if getattr(options, name) is not None:
-                raise InvalidInput(f"--{name} is for {listed(DISTURBED)}, not {options.experiment}")
+    for field, value in given.items():
+        takers = [name for name in _names() if field in PRESETS[name].fields]
+        if value is not None and options.experiment not in takers:
+            option = ExperimentConfig.option_of(field)
+            raise InvalidInput(f"{option} is for {listed(takers)}, not {options.experiment}")
     return experiment_config(options.experiment, {**trial_grid_from(options), **given})
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from dataclasses import fields
 from functools import cache
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, create_model
 
@@ -23,18 +23,17 @@ from hexapods.domain.errors import UnknownName
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.observation import OBSERVATIONS
 from hexapods.experiments.config import (
-    EXPERIMENTS,
     MAX_SEEDS,
     MAX_WORKERS,
     ExperimentConfig,
-    ExperimentName,
     experiment_config,
     settings_by_name,
 )
+from hexapods.experiments.presets import PRESETS
 
 VALID.update(
     {
-        "experiment": one_of(EXPERIMENTS),
+        "experiment": one_of(PRESETS),
         "seeds": f"a whole number from 1 to {MAX_SEEDS:,}",
         "gaits": f"a list, each {one_of(NAMED_GAITS)}, or an object",
         "observations": f"a list, each {one_of(OBSERVATIONS)}",
@@ -63,7 +62,7 @@ class ExperimentBody(Body):
     registered: ClassVar[Collection[str]] = ()
     """Names of the agents that may be compared, once the server has started."""
 
-    experiment: Annotated[ExperimentName, Field(description=VALID["experiment"])]
+    experiment: str
     name: Name | None = None
     settings: SettingsBody = Field(default_factory=SettingsBody)
     workers: Annotated[
@@ -108,6 +107,8 @@ def experiment_body(agents: tuple[str, ...]) -> type[ExperimentBody]:
     own = record_fields(
         ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance", "reward"}
     )
+    preset_name: Any = Literal[tuple(PRESETS)]
+    own["experiment"] = (Annotated[preset_name, Field(description=VALID["experiment"])], ...)
     name = "ExperimentBody"
     model = create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
     model.registered = agents

@@ -8,7 +8,7 @@ from app.api.answers import Answer, Count, Page, RunView
 from app.api.option_answers import Described
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
-from hexapods.experiments.config import ExperimentConfig, ExperimentName
+from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.lane import PlanningModel
 
@@ -351,7 +351,7 @@ class SummaryView(Answer):
     """
 
     format: int
-    experiment: ExperimentName
+    experiment: str
     config: ExperimentConfig
     versions: dict[str, str]
     machine: Machine

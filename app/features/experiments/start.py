@@ -9,9 +9,10 @@ from app.jobs.submissions import check_walk
 from app.storage.database.store import RunStore
 from app.storage.run import Run
 from hexapods.domain.errors import InvalidInput
-from hexapods.experiments.config import GRID, ExperimentConfig
+from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.names import experiment_name
 from hexapods.experiments.plan import Plan
+from hexapods.experiments.presets import GRID
 from hexapods.extras import require
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
 

@@ -12,7 +12,8 @@ from app.features.experiments.trial_options import (
     trial_grid_from,
 )
 from hexapods.domain.settings import declared_fields
-from hexapods.experiments.config import GRID, experiment_config
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.presets import GRID
 from hexapods.runs.config import TrainingConfig
 
 

@@ -21,7 +21,7 @@ from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS, Robot, as_mapping
 from hexapods.domain.settings import Value, declared_fields
-from hexapods.experiments.config import ExperimentConfig, by_option, experiment_config, fields_of
+from hexapods.experiments.config import ExperimentConfig, by_option, experiment_config
 from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
@@ -379,7 +379,7 @@ def _experiment(config: ExperimentConfig) -> RunCode:
         else:
             values = value if isinstance(value, list) else [value]
             options.append((f"--{key.replace('_', '-')}", ",".join(map(_text, values))))
-    program = "hexapods sweep" if name == "sweep" else f"hexapods experiment {name}"
+    program = f"hexapods {config.preset.command}"
     call = _call("experiment", repr(name), {"folder": f"{name}-results", **given})
     python = (
         f"{_IMPORT}\n\n"
@@ -399,7 +399,7 @@ def _experiment_differences(config: ExperimentConfig) -> Arguments:
     """Return what differs from the defaults, of which some depend on simulator and agents."""
     name, shown = config.experiment, by_option(to_json(config))
     chosen: Arguments = {"simulator": config.simulator}
-    if "agents" in fields_of(name):
+    if "agents" in config.preset.fields:
         chosen["agents"] = config.agents
     usual = to_json(experiment_config(name, {}))
     expected = {

@@ -15,12 +15,10 @@ from hexapods.experiments.claims.judging import Claim
 from hexapods.experiments.claims.sweep import SWEEP_CLAIMS
 from hexapods.experiments.claims.table1 import TABLE1_CLAIMS
 
-CLAIMS_OF: Mapping[str, Sequence[Claim]] = {
+CLAIMS: Mapping[str, Sequence[Claim]] = {
     "table1": TABLE1_CLAIMS,
     "figure4": FIGURE4_CLAIMS,
     "sweep": SWEEP_CLAIMS,
-    "league": (),
-    "recovery": (),
     "groups": GROUPS_CLAIMS,
-    "bodies": (),
 }
+"""Claims by the name that presets refer to."""

@@ -6,7 +6,7 @@ from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
 from hexapods.experiments.claims.judging import CaseFinding, Claim
 from hexapods.experiments.formatting import percent, shares
 from hexapods.experiments.labels import gait_name
-from hexapods.experiments.measures import REACHED_SHARE
+from hexapods.experiments.presets import REACHED_SHARE
 from hexapods.experiments.statistics import Interval
 
 HALF = 0.5

@@ -12,7 +12,7 @@ from hexapods.experiments.claims.gaits import gait_claims
 from hexapods.experiments.claims.judging import CaseFinding, Claim
 from hexapods.experiments.formatting import distance, listed, percent, shares
 from hexapods.experiments.labels import gait_name_with_papers
-from hexapods.experiments.measures import REACHED_SHARE
+from hexapods.experiments.presets import REACHED_SHARE
 from hexapods.experiments.published import GAITS, published
 from hexapods.experiments.statistics import Interval, Verdict, bootstrap_exceeds
 

@@ -7,10 +7,10 @@ from typing import Any
 from hexapods.agents.appearance import title_of
 from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
-from hexapods.experiments.config import DISTURBED
 from hexapods.experiments.formatting import listed, percent, shares
 from hexapods.experiments.labels import OBSERVATION_LABELS, gait_name, robot_name, world_name
 from hexapods.experiments.narrative.sweep import combination_name
+from hexapods.experiments.presets import Preset
 
 LEVEL_M = 0.01
 """Of two who are less apart, neither is farther."""
@@ -23,14 +23,14 @@ _PLACE_NAMES: Mapping[str, Callable[[Any], str]] = {
 _PLACE = tuple(_PLACE_NAMES)
 
 
-def find(summary: Mapping[str, Any]) -> str:
-    """Return what came of a sweep, a league or a recovery so far, by its intervals.
+def find(summary: Mapping[str, Any], preset: Preset) -> str:
+    """Return the finding so far, by its intervals: the best combination, or the farthest learner.
 
     Empty while there is nothing to compare, and where the paper's claims say it.
     """
-    if summary["experiment"] == "sweep":
+    if preset.names_best:
         return _best_of(cases_of(summary))
-    return _farthest(summary["worlds"]) if summary["experiment"] in DISTURBED else ""
+    return _farthest(summary["worlds"]) if preset.has_worlds else ""
 
 
 def _best_of(cases: Sequence[Case]) -> str:

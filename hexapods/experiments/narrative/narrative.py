@@ -9,40 +9,39 @@ from hexapods.experiments.failures import failures_text
 from hexapods.experiments.narrative.figure4 import FIGURE4_NARRATIVE
 from hexapods.experiments.narrative.sweep import SWEEP_NARRATIVE
 from hexapods.experiments.narrative.table1 import TABLE1_NARRATIVE
+from hexapods.experiments.presets import Preset
 
 Paragraph = Callable[[Sequence[Case]], str | None]
 FEW_SEEDS = 10
-_NARRATIVES: Mapping[str, Sequence[tuple[str, Paragraph]]] = {
+NARRATIVES: Mapping[str, Sequence[tuple[str, Paragraph]]] = {
     "table1": TABLE1_NARRATIVE,
     "figure4": FIGURE4_NARRATIVE,
     "sweep": SWEEP_NARRATIVE,
-    "league": (),
-    "recovery": (),
-    "groups": (),
-    "bodies": (),
 }
+"""Paragraphs with their headings, by the name that presets refer to."""
 
 
-def narrate(summary: Mapping[str, Any]) -> list[dict[str, str]]:
+def narrate(summary: Mapping[str, Any], preset: Preset) -> list[dict[str, str]]:
     """Return texts with headings, one paragraph per line.
 
     Texts whose trials are not complete yet are omitted.
     """
     cases = cases_of(summary)
-    written = [(heading, write(cases)) for heading, write in _NARRATIVES[summary["experiment"]]]
+    paragraphs = NARRATIVES[preset.narrative] if preset.narrative else ()
+    written = [(heading, write(cases)) for heading, write in paragraphs]
     texts = [{"heading": heading, "text": text} for heading, text in written if text]
-    caution = _caution(summary)
+    caution = _caution(summary, preset)
     return [*texts, {"heading": "Uncertainty", "text": caution}] if texts else []
 
 
-def _caution(summary: Mapping[str, Any]) -> str:
+def _caution(summary: Mapping[str, Any], preset: Preset) -> str:
     trials, config = summary["trials"], summary["config"]
     sentences = [
         "A number in brackets after a value is its 95 % interval: from other seeds, the value "
         "would mostly fall in there. Where such an interval leaves a question open, this report "
         "says “not established” and not what looks likely."
     ]
-    if summary["experiment"] == "table1":
+    if preset.is_published:
         sentences.append(
             "The intervals know of our seeds only. A printed value is one run, and nobody knows "
             "which robot, servos and reading made it."

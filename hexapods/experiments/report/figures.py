@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hexapods.experiments.claims.cases import cases_of
-from hexapods.experiments.config import DISTURBED
+from hexapods.experiments.presets import PRESETS
 from hexapods.experiments.report import (
     figure_curves,
     figure_sweep,
@@ -26,7 +26,7 @@ def panels(summary: Mapping[str, Any]) -> list[tuple[str, list[Picture]]]:
                 (case.label, figure_curves.panels(case, top, f"figure4-{number + 1}"))
                 for number, case in enumerate(cases)
             ]
-        if summary["experiment"] in DISTURBED:
+        if PRESETS[summary["experiment"]].has_worlds:
             return figure_worlds.panels(summary)
         pictures = [figure_sweep.panel(c, f"sweep-{n + 1}") for n, c in enumerate(cases)]
         return [("", pictures)]

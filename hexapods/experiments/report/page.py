@@ -20,24 +20,15 @@ from hexapods.experiments.config import (
     by_option,
     default_agents,
     experiment_config,
-    fields_of,
 )
 from hexapods.experiments.formatting import listed
 from hexapods.experiments.labels import gait_name
+from hexapods.experiments.presets import PRESETS
 from hexapods.experiments.report import figure_worlds, tables
 from hexapods.experiments.report.drawing import Picture, agent_colours, inline_svg
 from hexapods.experiments.report.figures import panels
 from hexapods.runs.best_known import COVERAGE, DEFINITION
 
-TITLES: Mapping[str, str] = {
-    "table1": "Table 1 over many seeds",
-    "figure4": "Figure 4 over many seeds",
-    "sweep": "A sweep",
-    "league": "A league of learners and searchers",
-    "recovery": "Recovery after a disturbance",
-    "groups": "Fewer groups learn faster",
-    "bodies": "Learners on many bodies",
-}
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """The page's Content-Security-Policy, also set by a `<meta>` element of the page."""
 _FIRST = (
@@ -60,7 +51,7 @@ def page(summary: Mapping[str, Any]) -> str:
     cases, name = cases_of(summary), summary["experiment"]
     context: Mapping[str, Any] = {
         "summary": summary,
-        "title": TITLES[name],
+        "title": PRESETS[name].heading,
         "policy": POLICY,
         "lead": _lead(summary),
         "in_short": _claims_summary(summary["claims"]),
@@ -92,11 +83,11 @@ def command(config: Mapping[str, Any]) -> str:
     """Return the shell command of an experiment: its seeds and all options other than defaults."""
     name, chosen = config["experiment"], by_option(config)
     given: dict[str, Any] = {"simulator": config["simulator"]}
-    if "agents" in fields_of(name):
+    if "agents" in PRESETS[name].fields:
         given["agents"] = tuple(config["agents"])
-    usual = {"agents": default_agents(name), "simulator": ExperimentConfig.simulator}
+    usual = {"agents": list(default_agents(PRESETS[name])), "simulator": ExperimentConfig.simulator}
     defaults = by_option(to_json(experiment_config(name, given))) | usual
-    arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
+    arguments = ["hexapods", *PRESETS[name].command.split()]
     for field in dict.fromkeys((*_FIRST, *chosen)):
         if field in chosen and (field in ("seeds", "seed") or chosen[field] != defaults.get(field)):
             option = ExperimentConfig.option_of(field)

@@ -16,9 +16,9 @@ from hexapods.experiments.labels import (
 )
 from hexapods.experiments.narrative.sweep import combination_name
 from hexapods.experiments.plan import EARNING_STEPS
+from hexapods.experiments.presets import PRESETS
 from hexapods.experiments.published import COLUMNS, DISTANCES, published
 from hexapods.experiments.statistics import CONFIDENCE, Interval
-from hexapods.experiments.worlds import share_to_reach
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
 UNITS: Mapping[str, str] = {
@@ -245,7 +245,7 @@ def _world_table(
     known = "" if best_m is None else f"; best known {metres(best_m)}"
     learner = next((one for one in rows if one["curve"]), None)
     at: list[int] = learner["curve"]["steps"] if learner and is_recovery else []
-    share = percent(share_to_reach(summary["experiment"]))
+    share = percent(PRESETS[summary["experiment"]].reached_share)
     earning = [step for step in at if step % EARNING_STEPS == 0]
     columns = [
         *([f"After {step:,}" for step in at] or ["Distance", "Mean over practice"]),

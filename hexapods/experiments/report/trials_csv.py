@@ -6,7 +6,7 @@ from io import StringIO
 from typing import Any
 
 from hexapods.domain.text import text_cell
-from hexapods.experiments.config import DISTURBED, ExperimentConfig
+from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.trial_rows import practised_steps
@@ -41,7 +41,7 @@ def trials_csv(
     writer = csv.writer(out)
     plan = Plan(config)
     varied = [name for name in plan.settings[0].parameters if name != "steps"]
-    more = ("world",) if config.experiment in DISTURBED else ()
+    more = ("world",) if config.preset.has_worlds else ()
     writer.writerow((*_FIRST, *more, *varied, *_LAST))
     for trial in plan.trials():
         if trial.key in results:

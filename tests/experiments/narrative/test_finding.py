@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from hexapods.experiments.names import TITLES
 from hexapods.experiments.plan import TrialSetting
+from hexapods.experiments.presets import PRESETS
 from hexapods.experiments.summary import summarise
 from tests.experiments.sample_experiments import alpha_of, around, config, summary_of
 
@@ -93,6 +93,6 @@ def test_the_only_learner_is_measured_by_greedy() -> None:
     )
 
 
-@pytest.mark.parametrize("experiment", [*TITLES])
+@pytest.mark.parametrize("experiment", [*PRESETS])
 def test_without_trials_nothing_is_found(experiment: str) -> None:
     assert summarise(config(experiment), {})["finding"] == ""

@@ -11,7 +11,8 @@ from app.features.experiments.trial_options import trial_grid_from
 from hexapods.domain.gait import GaitSpec
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import robot
-from hexapods.experiments.config import GRID, ExperimentConfig, experiment_config
+from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.presets import GRID
 from hexapods.experiments.report.page import command
 from tests.experiments.sample_experiments import ROBOTS
 

@@ -26,6 +26,7 @@ import { paceOf, runTitle } from "../feature.js";
 /** @import { Run, State, Summary, Verb } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
 
+/** @type {Record<string, typeof Worlds>} */
 const FIGURES = {
   table1: TableOne, figure4: FigureFour, sweep: SweepTable,
   league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
