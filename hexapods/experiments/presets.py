@@ -28,6 +28,7 @@ class Preset:
         title: on the page and in names of runs.
         heading: of its report; by default its title.
         description: what is tried, for people who choose.
+        about: the same in a few words; by default its description.
         fields: fields of `ExperimentConfig` that users may set: axes, agents, seeds and others.
         defaults: values of its fields other than those of `ExperimentConfig`.
         ideal_defaults: those that differ in the kinematic simulator, which knows no tolerance and
@@ -60,6 +61,7 @@ class Preset:
     claims: str | None = None
     narrative: str | None = None
     names_best: bool = False
+    about: str = ""
     heading: str = ""
     command: str = ""
 
@@ -107,6 +109,7 @@ _ALL = (
         heading="Table 1 over many seeds",
         description="The paper’s Table 1: Q-learning after 500 and after 1000 steps beside greedy "
         "and two-step, in all four gaits, with the feet measured and with the commands remembered.",
+        about="As in the paper, four gaits",
         fields=_COMMON_FIELDS,
         defaults={"steps": (500, 1000), "robots": (robot("stiff"), robot("compliant"))},
         references=("greedy", "two-step"),
@@ -122,6 +125,7 @@ _ALL = (
         description="The paper’s Figure 4: practice in blocks of 250 steps up to 2000, the table "
         "saved and loaded in between, beside as many steps in one go, and greedy as the line to "
         "reach.",
+        about="Practice up to 2000 steps",
         fields=(*_COMMON_FIELDS, "agents"),
         defaults={"steps": (250,), "blocks": FIGURE4_BLOCKS},
         measure="blocks",
@@ -148,6 +152,7 @@ _ALL = (
         heading="A league of learners and searchers",
         description="Learners and searchers in several worlds, with robots that differ a little by "
         "seed: distance against practice, beside greedy and the best known walk.",
+        about="Learners and searchers in worlds",
         fields=(*_COMMON_FIELDS, *_WORLD_FIELDS),
         defaults={
             **_IN_WORLDS,
@@ -164,6 +169,7 @@ _ALL = (
         heading="Recovery after a disturbance",
         description="Learners practise, then something happens to them, and they learn on: how far "
         "they walk at once, and how soon they walk well again.",
+        about="Learners that something happens to",
         fields=(*_COMMON_FIELDS, *_WORLD_FIELDS),
         defaults={
             **_IN_WORLDS,
@@ -180,6 +186,7 @@ _ALL = (
         title="Fewer groups learn faster",
         description="Pairs of legs beside two groups of three: fewer groups have fewer states, 25 "
         "instead of 125, and Q-learning comes level with greedy after 250 steps.",
+        about="Two groups of three legs, or three pairs",
         fields=(*_COMMON_FIELDS, *_WORLD_FIELDS),
         defaults={
             "gaits": ("left-right-origin", "left-right-vertical", "tripod"),
@@ -196,6 +203,7 @@ _ALL = (
         heading="Learners on many bodies",
         description="Learners on robots with other bodies, each in the gait that suits it: how far "
         "they walk, and how soon.",
+        about="Learners on creatures and kits",
         fields=(*(name for name in _COMMON_FIELDS if name != "gaits"), *_WORLD_FIELDS),
         defaults={
             "agents": ("q-learning", "linear-model"),

@@ -2091,6 +2091,30 @@ export interface ExperimentOption {
    * the agents that it can compare.
    */
   agents: string[];
+  /**
+   * what it is, in a few words.
+   */
+  about: string;
+  /**
+   * when its learners are evaluated.
+   */
+  measure: "distance" | "blocks" | "practice" | "recovery";
+  /**
+   * agents that are always tried in addition.
+   */
+  references: string[];
+  /**
+   * whether a race measures decision times in each place.
+   */
+  is_timed: boolean;
+  /**
+   * whether the paper prints its numbers.
+   */
+  is_published: boolean;
+  /**
+   * whether its agents' settings may have several values.
+   */
+  takes_settings: boolean;
 }
 /**
  * Page of experiments.

@@ -95,6 +95,12 @@ const TRAINING = {
 };
 
 const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace", "kind"];
+/** What an experiment has that sweeps over settings. */
+const SWEEP = {
+  about: "About it", measure: /** @type {const} */ ("distance"), references: ["greedy"], is_timed: false,
+  is_published: false,
+  takes_settings: true,
+};
 const EXPERIMENT = {
   name: "", seeds: 30, seed: 0, gaits: ["tripod", "wave"], observations: ["measured"], robots: ["stiff"],
   simulator: "mujoco", agents: ["learner"], steps: [500], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
@@ -180,20 +186,30 @@ export const OPTIONS = {
   clocks: [described("paper", "paper clock"), described("wall", "real clock"), described("free", "no clock")],
   experiments: [
     {
-      ...described("table1", "Table 1"), fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] },
+      ...described("table1", "Table 1"), ...SWEEP, references: ["greedy", "two-step"], is_timed: true,
+      is_published: true, takes_settings: false,
+      fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] },
       simulator_defaults: { mujoco: {}, kinematic: {} }, agents: [],
     },
     {
-      ...described("sweep", "Sweep"), fields: [...COMMON, "agents", ...GRID], grid: GRID, defaults: EXPERIMENT,
+      ...described("figure4", "Figure 4"), ...SWEEP, measure: /** @type {const} */ ("blocks"), takes_settings: false,
+      fields: [...COMMON, "agents"], grid: [], defaults: { ...EXPERIMENT, steps: [250] },
+      simulator_defaults: { mujoco: {}, kinematic: {} }, agents: ["learner"],
+    },
+    {
+      ...described("sweep", "Sweep"), ...SWEEP,
+      fields: [...COMMON, "agents", ...GRID], grid: GRID, defaults: EXPERIMENT,
       simulator_defaults: { mujoco: {}, kinematic: {} }, agents: EVERY_AGENT,
     },
     {
-      ...described("league", "League"), fields: IN_WORLDS, grid: ["steps"], agents: EVERY_AGENT,
+      ...described("league", "League"), ...SWEEP, measure: /** @type {const} */ ("practice"), takes_settings: false,
+      fields: IN_WORLDS, grid: ["steps"], agents: EVERY_AGENT,
       defaults: { ...EXPERIMENT, agents: ["learner", "planner"], worlds: ["flat", "limp-pair"], tolerance: 0.03 },
       simulator_defaults: { mujoco: {}, kinematic: { worlds: ["flat"], tolerance: 0 } },
     },
     {
-      ...described("recovery", "Recovery"), fields: IN_WORLDS, grid: ["steps"], agents: ["learner", "tracer"],
+      ...described("recovery", "Recovery"), ...SWEEP, measure: /** @type {const} */ ("recovery"), takes_settings: false,
+      fields: IN_WORLDS, grid: ["steps"], agents: ["learner", "tracer"],
       defaults: { ...EXPERIMENT, worlds: ["limp-pair"], tolerance: 0.03 },
       simulator_defaults: { mujoco: {}, kinematic: { worlds: ["flat"], tolerance: 0 } },
     },

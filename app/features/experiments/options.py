@@ -55,6 +55,12 @@ def experiment_options(agents: Collection[str]) -> list[dict[str, Any]]:
                 "defaults": defaults,
                 "simulator_defaults": simulator_defaults,
                 "agents": [a for a in agents if "agents" in fields and compares(preset, a)],
+                "about": preset.about or preset.description,
+                "measure": preset.measure,
+                "references": list(preset.references),
+                "is_timed": preset.is_timed,
+                "is_published": preset.is_published,
+                "takes_settings": preset.takes_settings,
             }
         )
     return options

@@ -9,6 +9,7 @@ from app.api.option_answers import Described
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
 from hexapods.experiments.config import ExperimentConfig
+from hexapods.experiments.presets import Measure
 from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.lane import PlanningModel
 
@@ -37,6 +38,12 @@ class ExperimentOption(Described):
     Attributes:
         simulator_defaults: by simulator: the defaults that are others there.
         agents: the agents that it can compare.
+        about: what it is, in a few words.
+        measure: when its learners are evaluated.
+        references: agents that are always tried in addition.
+        is_timed: whether a race measures decision times in each place.
+        is_published: whether the paper prints its numbers.
+        takes_settings: whether its agents' settings may have several values.
     """
 
     fields: list[str]
@@ -44,6 +51,12 @@ class ExperimentOption(Described):
     defaults: dict[str, Any]
     simulator_defaults: dict[str, dict[str, Any]]
     agents: list[str]
+    about: str
+    measure: Measure
+    references: list[str]
+    is_timed: bool
+    is_published: bool
+    takes_settings: bool
 
 
 class SummaryEvent(Answer):

@@ -46,6 +46,9 @@ const sweptIn = (config) =>
       ? [`${fieldTitle(name)} ${values.join(", ")}`]
       : []);
 
+/** What the server says of an experiment; undefined where it has none of this name. @param {string} name */
+export const experimentKind = (name) => options.value?.experiments?.find((kind) => kind.name === name);
+
 /**
  * An experiment's swept values, seeds and places in one line.
  * @param {Run} run
@@ -55,7 +58,7 @@ const describe = ({ config }) => {
     customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
-    ...(config.experiment === "sweep" ? sweptIn(config) : []), worldsIn(config).join(", "),
+    ...(experimentKind(config.experiment)?.takes_settings ? sweptIn(config) : []), worldsIn(config).join(", "),
     count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
     config.tolerance ? `${settingTitle("tolerance")} ${config.tolerance}` : "",
     config.reward === "track" ? rewardInWords(config.reward) : "", simulatorTitle(config.simulator),

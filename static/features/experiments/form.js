@@ -43,33 +43,32 @@ const combinations = (values, fields) =>
   fields.reduce((total, field) => total * Math.max(1, /** @type {unknown[]} */ (values[field] ?? []).length), 1);
 
 /**
- * Learners have one trial per seed, agents that look ahead one in all; greedy is always tried for comparison.
- * Table 1 has two-step and a race that measures decision times besides.
- * @param {string} experiment
+ * Learners have one trial per seed, agents that look ahead one in all; references are always tried for comparison.
+ * @param {ExperimentKind} kind
  * @param {ExperimentValues} values
  */
-function countTrials(experiment, values) {
-  const places = combinations(values, PLACE_FIELDS);
-  if (experiment === "table1") return places * (2 + values.steps.length * values.seeds + 1);
+function countTrials(kind, values) {
   const worlds = /** @type {string[]} */ (values.worlds ?? [""]);
-  return places * worlds.reduce((total, world) => total + countInWorld(values, world), 0);
+  const inPlace = worlds.reduce((total, world) => total + countInWorld(kind, values, world), 0);
+  return combinations(values, PLACE_FIELDS) * (inPlace + (kind.is_timed ? 1 : 0));
 }
 
 /**
  * Where robots or their sensors differ by seed, each agent has a trial per seed; where the world or the robots are
- * not the nominal ones, greedy plans with the nominal model besides.
+ * not the nominal ones, greedy plans with the nominal model besides. Practice in blocks is repeated in one go.
+ * @param {ExperimentKind} kind
  * @param {ExperimentValues} values
  * @param {string} world empty where the experiment has none
  */
-function countInWorld(values, world) {
+function countInWorld({ measure, references }, values, world) {
   const disturbances = world ? parseWorld(world).value ?? [] : [];
   const varies = Boolean(values.tolerance) || disturbances.some(({ kind }) => kind === NOISE);
   const trialsOf = (/** @type {string} */ agent) => {
     const own = combinations(values, Object.keys(settingsOf([agent])));
     if (!learns(agent)) return varies ? own * values.seeds : own;
-    return own * combinations(values, PRACTICE_FIELDS) * values.seeds;
+    return own * combinations(values, PRACTICE_FIELDS) * values.seeds * (measure === "blocks" ? 2 : 1);
   };
-  const agents = [...new Set(["greedy", ...values.agents])];
+  const agents = [...new Set([...references, ...values.agents])];
   const nominal = disturbances.length || values.tolerance ? ["greedy"] : [];
   return [...agents, ...nominal].reduce((total, agent) => total + trialsOf(agent), 0);
 }
@@ -128,7 +127,7 @@ export const values = computed(() => {
 });
 
 /** The number of trials that it would have. */
-export const trials = computed(() => countTrials(chosenExperiment.value.name, values.value));
+export const trials = computed(() => countTrials(chosenExperiment.value, values.value));
 
 // ---- texts as values
 

@@ -31,8 +31,9 @@ const quickly = ({ defaults: { gaits } }) => ({
   gaits: gaits.slice(0, 1),
 });
 
-/** Learners that a recovery compares: a few of different kinds. */
-const severalLearners = () => experimentOf("recovery").defaults.agents.filter(learns);
+/** A few learners of different kinds: those that are compared after something happened to them. */
+const severalLearners = () =>
+  experiments.value.find(({ measure }) => measure === "recovery")?.defaults.agents.filter(learns) ?? [];
 const MAX_FEW = 3;
 
 /** @type {Preset[]} */
@@ -64,23 +65,14 @@ const EMPTY = {
   name: "empty", title: "Empty", about: "Choose everything", experiment: "sweep", fields: [], begins: () => ({}),
 };
 
-/** What a served experiment is, in few words, instead of its description. @type {Record<string, string>} */
-const ABOUT = {
-  table1: "As in the paper, four gaits",
-  figure4: "Practice up to 2000 steps",
-  league: "Learners and searchers in worlds",
-  recovery: "Learners that something happens to",
-  groups: "Two groups of three legs, or three pairs",
-  bodies: "Learners on creatures and kits",
-};
 const SHOWN = ["agents", "worlds", "steps", "seeds", "simulator"];
 
 /** The presets that the server can run: the own ones, its experiments as they are, and all. @returns {Preset[]} */
 export function presets() {
   const kinds = experiments.value;
   const isServed = (/** @type {Preset} */ { experiment }) => kinds.some(({ name }) => name === experiment);
-  const rest = kinds.filter(({ name }) => name !== "sweep").map(({ name, title, description, fields }) => ({
-    name, title, about: ABOUT[name] ?? description, experiment: name,
+  const rest = kinds.filter((kind) => !kind.takes_settings).map(({ name, title, about, fields }) => ({
+    name, title, about, experiment: name,
     fields: SHOWN.filter((field) => fields.includes(field)), begins: () => ({}),
   }));
   return [...OWN.filter(isServed), ...rest, ...[EMPTY].filter(isServed)];

@@ -3,6 +3,7 @@ import { count, duration, listed, percentage, sentence, whole } from "../../js/f
 import { customRobotInWords, presetOf, storedName } from "../../js/robots.js";
 import { served } from "../../js/store.js";
 import { agentTitle, gaitTitle, observationTitle, rewardInWords, simulatorTitle } from "../../js/titles.js";
+import { experimentKind } from "./feature.js";
 
 /** @import { RobotConfig, Run, Summary } from "../../js/types.js" */
 
@@ -42,7 +43,8 @@ export function configInWords(config) {
     customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own";
   return sentence([
     fewOf(agents.map(agentTitle), "agent"),
-    config.experiment === "figure4" ? "" : `${[steps].flat().map(whole).join(", ")} steps of practice`,
+    experimentKind(config.experiment)?.measure !== "blocks" &&
+      `${[steps].flat().map(whole).join(", ")} steps of practice`,
     gaitsIn(config), listed(observations.map(observationTitle)), `${listed(robots.map(robotName))} robot`,
     `${count(seeds, "seed")}${seed ? ` from seed ${seed}` : ""}`,
     tolerance ? `built to within ${percentage(tolerance)}` : "", reward === "track" ? rewardInWords(reward) : "",

@@ -136,6 +136,9 @@ test("trials are counted before they are started", () => {
   // Two gaits, each with two references, two lengths of practice and a race that measures.
   setField("seeds", 3);
   assert.equal(trials.value, 2 * (2 + 2 * 3 + 1));
+  // Practice in blocks, and once more in one go.
+  chooseExperiment("figure4");
+  assert.equal(trials.value, 2 * (1 + 2 * 3));
   chooseExperiment("sweep");
   setField("alpha", [0.1, 0.3, 0.6]);
   assert.equal(trials.value, 2 * (1 + 3 * 3));

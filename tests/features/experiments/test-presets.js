@@ -34,7 +34,7 @@ beforeEach(() => {
 
 test("the presets are the own ones, and the experiments of the server as they are", () => {
   assert.deepEqual(presets().map(({ name }) => name),
-    ["setting", "learners", "worlds", "table1", "league", "recovery", "empty"]);
+    ["setting", "learners", "worlds", "table1", "figure4", "league", "recovery", "empty"]);
   options.value = { ...OPTIONS, experiments: OPTIONS.experiments.slice(0, 1) };
   assert.deepEqual(presets().map(({ name }) => name), ["table1"]);
 });

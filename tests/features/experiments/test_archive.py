@@ -100,7 +100,7 @@ def test_unregistered_agents_are_refused_without_importing_their_module(
         (_set("seeds", 10**9, "run", "config"), "seeds"),
         (_set("alpha", [n / 1000 for n in range(1, 999)], "run", "config", "settings"), "total"),
         (_set("grid_side_m", [0.5], "run", "config"), "cannot reach"),
-        (_set("experiment", "table9", "run", "config"), "'table1', 'figure4', 'sweep'"),
+        (_set("experiment", "table9", "run", "config"), "table1, figure4, sweep"),
         (_set("agents", ["my.module:Agent"], "run", "config"), "run.json"),
         (_set("colour", 1, "run", "config"), "colour"),
         (_set("files", ["../../x"], "run", "result"), "this experiment has not"),

@@ -21,16 +21,18 @@ import { StateOf } from "./state-of.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Worlds } from "./worlds.js";
-import { paceOf, runTitle } from "../feature.js";
+import { experimentKind, paceOf, runTitle } from "../feature.js";
 
 /** @import { Run, State, Summary, Verb } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
 
-/** @type {Record<string, typeof Worlds>} */
-const FIGURES = {
-  table1: TableOne, figure4: FigureFour, sweep: SweepTable,
-  league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
-};
+/** The table or chart of an experiment, by what it measures. @param {Summary} known */
+function figureOf({ experiment }) {
+  const kind = experimentKind(experiment);
+  if (!kind) return null;
+  if (kind.measure === "distance") return kind.takes_settings ? SweepTable : TableOne;
+  return kind.measure === "blocks" ? FigureFour : Worlds;
+}
 
 /** Id of the menu from which name, tags and notes are changed. */
 const MORE = "more-of-report";
@@ -79,7 +81,7 @@ const soFar = (run) => run.state !== "finished" && html`<span class="so-far">So 
 
 /** @param {{ known: Summary }} props */
 function Findings({ known }) {
-  const Figure = FIGURES[known.experiment];
+  const Figure = figureOf(known);
   return html`
     <${LeftOut} trials=${known.trials} />
     ${Figure && html`<${Figure} known=${known} />`}

@@ -9,6 +9,7 @@ import { count, percentage, whole } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
 import { agentTitle, gaitTitle, planningModelTitle } from "../../../js/titles.js";
+import { experimentKind } from "../feature.js";
 import { Chart } from "../../../js/components/charts.js";
 import { html, Segments } from "../../../js/components/elements.js";
 import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
@@ -20,17 +21,18 @@ import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./r
 
 const NOMINAL = "nominal";
 
-/** Question of each experiment. */
-/** @type {Record<string, string>} */
-const TITLES = {
-  league: "Distances by agent and world", recovery: "Recovery by agent and disturbance",
-  groups: "Distances by groups of legs", bodies: "Distances by agent and body",
-};
-/** @type {Record<string, string>} */
-const STEPS_OF = {
-  league: "steps of practice", recovery: "steps after it happened",
-  groups: "steps of practice", bodies: "steps of practice",
-};
+/** @param {Summary} known */
+const isRecovery = ({ experiment }) => experimentKind(experiment)?.measure === "recovery";
+
+/** The question that an experiment asks, by what it varies. @param {Summary} known */
+function titleOf(known) {
+  if (isRecovery(known)) return "Recovery by agent and disturbance";
+  const { robots = [], worlds = [] } = known.config;
+  return `Distances by agent and ${robots.length > 1 ? "body" : worlds.length > 1 ? "world" : "gait"}`;
+}
+
+/** @param {Summary} known */
+const stepsOf = (known) => (isRecovery(known) ? "steps after it happened" : "steps of practice");
 
 /** @param {{ known: Summary }} props */
 export function Worlds({ known }) {
@@ -49,7 +51,7 @@ export function Worlds({ known }) {
   return html`
     <section class="panel worlds" aria-labelledby="worlds">
       <div class="report-tools">
-        <h2 id="worlds">${TITLES[known.experiment]}</h2>
+        <h2 id="worlds">${titleOf(known)}</h2>
         ${worlds.length > 1 && html`
           <${Segments} label="World" choices=${worlds.map((one) => [one, worldTitle(one)])} value=${world}
             onValue=${setWorld} />
@@ -58,7 +60,7 @@ export function Worlds({ known }) {
         <${UnitSwitch} />
       </div>
       <p class="dim">
-        ${worldTitle(world)}: ${UNIT_NAMES[unit.value]}, against ${STEPS_OF[known.experiment]}.
+        ${worldTitle(world)}: ${UNIT_NAMES[unit.value]}, against ${stepsOf(known)}.
         Curve: interquartile mean; band: its 95 % interval.
       </p>
       <${AgentKey} agents=${learners}><${LevelKey} levels=${levelsOf(here[0])} /><//>
@@ -120,7 +122,7 @@ function Gait({ gait, entries, known }) {
       ${curves.length > 0 && html`
         <${Chart} name=${gaitTitle(gait)} label=${label} lines=${curves} marks=${marks}
           xs=${[...new Set(curves.flatMap(({ xs }) => xs))].sort((a, b) => a - b)}
-          x=${stepsAxis(curves, STEPS_OF[known.experiment])} y=${distanceAxis([{ lines: curves, marks }])} />
+          x=${stepsAxis(curves, stepsOf(known))} y=${distanceAxis([{ lines: curves, marks }])} />
       `}
     </figure>
   `;
@@ -252,11 +254,11 @@ const SHARES = [
 
 /**
  * Columns: title, explanation, and the cell of an entry.
- * @param {Summary} one
+ * @param {Summary} known
  * @param {WorldView[]} entries
  * @returns {Column[]}
  */
-function columnsOf({ experiment }, entries) {
+function columnsOf(known, entries) {
   const learner = entries.find(({ curve }) => curve);
   const share = (learner?.until_greedy ?? learner?.until_best_known)?.of;
   /** @type {Column[]} */
@@ -272,10 +274,10 @@ function columnsOf({ experiment }, entries) {
   const last = whole(learner?.curve?.steps.at(-1) ?? 0);
   /** @type {Column} */
   const distance = {
-    title: experiment === "recovery" ? `After ${last}` : "Distance", words: "In 50 steps, at the last evaluation",
+    title: isRecovery(known) ? `After ${last}` : "Distance", words: "In 50 steps, at the last evaluation",
     cell: (one) => distanceOf(one.distance, one),
   };
-  if (experiment !== "recovery") return [distance, ...SHARES, mean, ...until];
+  if (!isRecovery(known)) return [distance, ...SHARES, mean, ...until];
   return [
     { title: "Right after", words: "Once it has happened", cell: (one) => distanceOf(atPlace(one.curve, 0), one) },
     distance, ...SHARES, mean,
