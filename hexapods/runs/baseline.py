@@ -11,7 +11,6 @@ from threading import Lock
 
 from cachetools import LRUCache
 
-from hexapods import __version__
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.records import to_json
 from hexapods.domain.world import World
@@ -43,8 +42,8 @@ def baseline_id(config: TrainingConfig, conditions: World) -> str:
 
 @cache
 def _software() -> list[str]:
-    packages = [f"{name} {version(name)}" for name in ("mujoco-core", "numpy")]
-    return [f"hexapods {__version__}", *packages, platform.machine()]
+    names = ("racing-hexapods", "mujoco-core", "numpy")
+    return [*(f"{name} {version(name)}" for name in names), platform.machine()]
 
 
 class Baselines:
