@@ -202,7 +202,7 @@ export function valuesIn(lines, [from, to], whole) {
     const begin = Math.max(0, firstFrom(xs, from) - 1);
     const end = Math.min(xs.length, firstFrom(xs, to) + 1);
     const values = [ys, low ?? [], high ?? []].flatMap((list) => list.slice(begin, end));
-    for (const value of values.filter((one) => typeof one === "number")) {
+    for (const value of values.filter((entry) => typeof entry === "number")) {
       least = Math.min(least, value);
       most = Math.max(most, value);
     }
@@ -247,7 +247,7 @@ export function thinnedPath(points, columns) {
  */
 export function tableOf({ lines, marks, xs, titles }) {
   const levels = marks.filter(({ name, y }) => name && y !== undefined);
-  const hasInterval = (/** @type {Line} */ { low }) => Boolean(low?.some((one) => one !== null));
+  const hasInterval = (/** @type {Line} */ { low }) => Boolean(low?.some((bound) => bound !== null));
   const columns = [
     titles.x,
     ...lines.flatMap((line) => [line.name, ...(hasInterval(line) ? ["95 % from", "95 % to"] : [])]),

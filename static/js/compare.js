@@ -31,7 +31,7 @@ export const comparedIds = computed(() => page.compared.value.slice(0, MAX_COMPA
 export const leftOut = computed(() => page.compared.value.length - comparedIds.value.length);
 
 /** @param {string} id */
-export const leaveOut = (id) => (page.compared.value = comparedIds.value.filter((one) => one !== id));
+export const leaveOut = (id) => (page.compared.value = comparedIds.value.filter((other) => other !== id));
 
 /** Keep the runs and their curves, while the view is open. */
 export function followCompared() {
@@ -84,8 +84,8 @@ function problemOf(id, run) {
 
 /** Those that can be compared. */
 export const comparable = computed(() =>
-  /** @type {Comparable[]} */ (compared.value.filter((one) => one.run !== null)));
-/** @param {Comparable} one */
+  /** @type {Comparable[]} */ (compared.value.filter((entry) => entry.run !== null)));
+/** @param {Comparable} comparable */
 const runOf = ({ run }) => run;
 const comparedTrainings = computed(() => comparable.value.map(runOf).filter(({ kind }) => kind === "training"));
 
@@ -94,10 +94,10 @@ const comparedTrainings = computed(() => comparable.value.map(runOf).filter(({ k
 /** The curves of trainings that have been evaluated, and why each other run has none, in a sentence. */
 export const comparedCurves = computed(() => {
   const trainings = comparable.value.filter(({ run }) => run.kind === "training");
-  const curves = trainings.map((one) => ({ one, curve: curveOf(one.run) }));
+  const curves = trainings.map((training) => ({ one: training, curve: curveOf(training.run) }));
   const shown = curves.filter(({ curve }) => curve.points.length > 1);
   const races = comparable.value.filter(({ run }) => run.kind === "race");
-  const unmeasured = curves.filter(({ curve }) => curve.points.length < 2).map(({ one }) => one);
+  const unmeasured = curves.filter(({ curve }) => curve.points.length < 2).map(({ one: curve }) => curve);
   const letters = (/** @type {Compared[]} */ ones) => listed(ones.map(({ letter }) => letter));
   const none = (/** @type {Compared[]} */ ones, /** @type {string} */ words) =>
     (ones.length ? [`${letters(ones)} ${ones.length === 1 ? "has" : "have"} no ${words}.`] : []);
@@ -115,7 +115,7 @@ export const comparedCurves = computed(() => {
  */
 
 /** Whether values differ; a missing one does not. @type {(cells: (string | null)[]) => boolean} */
-const differ = (cells) => new Set(cells.filter((one) => one !== null)).size > 1;
+const differ = (cells) => new Set(cells.filter((cell) => cell !== null)).size > 1;
 
 /** @type {(name: string, title: string, cells: (string | null)[], best?: number[]) => Row} */
 const row = (name, title, cells, best = []) => ({ name, title, cells, differs: differ(cells), best });
@@ -175,7 +175,7 @@ export function settingRows(all) {
 export const comparedSettings = computed(() => settingRows(comparable.value.map(runOf)));
 
 /** Whether any run has something of a row. @param {Row} row */
-const isTold = ({ cells }) => cells.some((one) => one !== null && one !== NOTHING);
+const isTold = ({ cells }) => cells.some((cell) => cell !== null && cell !== NOTHING);
 
 /** @type {(setting: import("./types.js").SettingOption, value: any) => string | null} */
 function valueInWords(setting, value) {
@@ -218,10 +218,10 @@ const metresOrNull = (value) => (value === null ? null : metres(value));
 export const comparedResults = computed(() => {
   const all = comparable.value.map(runOf);
   const distances = all.map(distanceOf);
-  const most = Math.max(...distances.map((one) => one ?? -Infinity));
+  const most = Math.max(...distances.map((distance) => distance ?? -Infinity));
   // A race and a training have other numbers of steps.
   const isAlike = all.length > 1 && all.every(({ kind }) => kind === all[0].kind);
-  const best = isAlike ? distances.flatMap((one, n) => (one !== null && one === most ? [n] : [])) : [];
+  const best = isAlike ? distances.flatMap((distance, n) => (distance !== null && distance === most ? [n] : [])) : [];
   const shares = all.map((run, n) => {
     const [own, greedy] = [distances[n], greedyOf(run)];
     return own !== null && greedy ? percentage(own / greedy) : null;

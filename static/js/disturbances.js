@@ -27,26 +27,28 @@ export const disturbancesOf = ({ config, changes = [] }) => [
 
 // ---- what holds in a step
 
-/** @type {(one: Disturbance, step: number) => boolean} */
+/** @type {(disturbance: Disturbance, step: number) => boolean} */
 const holdsAt = ({ at_step, until_step }, step) =>
   at_step <= step && (until_step === undefined || until_step === null || step < until_step);
 
 /**
  * A disturbance by what it changes, leg by leg.
- * @param {Disturbance} one
+ * @param {Disturbance} disturbance
  * @returns {[string, Disturbance][]}
  */
-function partsOf(one) {
-  const { identified_by = [], part = [] } = kindNamed(one.kind) ?? {};
-  if (one.legs) return one.legs.map((leg) => [["leg", leg, ...part].join(" "), { ...one, legs: [leg] }]);
-  return [[[one.leg ? "leg" : one.kind, ...identified_by.map((field) => one[field])].join(" "), one]];
+function partsOf(disturbance) {
+  const { kind, leg, legs } = disturbance;
+  const { identified_by = [], part = [] } = kindNamed(kind) ?? {};
+  if (legs) return legs.map((number) => [["leg", number, ...part].join(" "), { ...disturbance, legs: [number] }]);
+  const key = [leg ? "leg" : kind, ...identified_by.map((field) => disturbance[field])].join(" ");
+  return [[key, disturbance]];
 }
 
 /** Whether what changes one thing replaces what changes another: of a leg that of its joints. */
 const covers = (/** @type {string} */ key, /** @type {string} */ other) => other === key || other.startsWith(`${key} `);
 
-/** @param {Disturbance} one */
-const keysOf = (one) => partsOf(one).map(([key]) => key);
+/** @param {Disturbance} disturbance */
+const keysOf = (disturbance) => partsOf(disturbance).map(([key]) => key);
 
 /**
  * The disturbances that hold in a step, leg by leg: a later one of the same thing replaces an earlier one.
@@ -57,14 +59,16 @@ const keysOf = (one) => partsOf(one).map(([key]) => key);
 export function conditionsAt(disturbances, step, robot) {
   /** @type {Map<string, Disturbance>} */
   const newest = new Map();
-  const lasting = disturbances.filter((one) => kindNamed(one.kind)?.lasts !== false && holdsAt(one, step));
-  for (const one of lasting.sort((a, b) => a.at_step - b.at_step)) {
-    for (const [key, part] of partsOf(one)) {
+  const lasting = disturbances.filter((disturbance) =>
+    kindNamed(disturbance.kind)?.lasts !== false && holdsAt(disturbance, step));
+  for (const disturbance of lasting.sort((a, b) => a.at_step - b.at_step)) {
+    for (const [key, part] of partsOf(disturbance)) {
       [...newest.keys()].filter((old) => covers(key, old)).forEach((old) => newest.delete(old));
       newest.set(key, part);
     }
   }
-  return [...newest.values()].filter((one) => !kindNamed(one.kind)?.repairs && !isNothing(one, robot));
+  return [...newest.values()].filter((disturbance) =>
+    !kindNamed(disturbance.kind)?.repairs && !isNothing(disturbance, robot));
 }
 
 /**
@@ -77,36 +81,36 @@ export function nothingOf(name, robot) {
   return typeof nothing === "string" ? builtPart(robot, nothing, options.value?.robots ?? []) : nothing;
 }
 
-/** Whether it only ends an earlier one. @param {Disturbance} one @param {RobotConfig} [robot] */
-function isNothing(one, robot) {
-  const { size = null } = kindNamed(one.kind) ?? {};
-  return size !== null && one[size] === nothingOf(one.kind, robot);
+/** Whether it only ends an earlier one. @param {Disturbance} disturbance @param {RobotConfig} [robot] */
+function isNothing(disturbance, robot) {
+  const { size = null } = kindNamed(disturbance.kind) ?? {};
+  return size !== null && disturbance[size] === nothingOf(disturbance.kind, robot);
 }
 
 /**
  * Whether something would change: a repair, or a slope of 0°, has to end something that holds.
- * @param {Disturbance} one
+ * @param {Disturbance} disturbance
  * @param {Disturbance[]} conditions
  * @param {RobotConfig} [robot]
  */
-export function changesSomething(one, conditions, robot) {
-  if (!kindNamed(one.kind)?.repairs && !isNothing(one, robot)) return true;
-  const own = keysOf(one);
+export function changesSomething(disturbance, conditions, robot) {
+  if (!kindNamed(disturbance.kind)?.repairs && !isNothing(disturbance, robot)) return true;
+  const own = keysOf(disturbance);
   return conditions.some((other) => keysOf(other).some((key) => own.some((mine) => covers(mine, key))));
 }
 
 /**
  * Add a disturbance to those chosen for the same step. It replaces those that it contradicts.
  * @param {Disturbance[]} chosen
- * @param {Disturbance} one
+ * @param {Disturbance} disturbance
  * @param {Disturbance[]} before those that hold without them
  * @param {RobotConfig} [robot]
  */
-export function chosenWith(chosen, one, before, robot) {
-  const own = keysOf(one);
+export function chosenWith(chosen, disturbance, before, robot) {
+  const own = keysOf(disturbance);
   const isKept = (/** @type {string} */ key) => !own.some((mine) => covers(mine, key) || covers(key, mine));
   const kept = chosen.flatMap(partsOf).flatMap(([key, part]) => (isKept(key) ? [part] : []));
-  return [...kept, ...(changesSomething(one, before, robot) ? [one] : [])];
+  return [...kept, ...(changesSomething(disturbance, before, robot) ? [disturbance] : [])];
 }
 
 /**
@@ -133,16 +137,17 @@ export function withUnit(value, unit) {
   return unit === "°" ? `${text}°` : `${text}${unit ? JOIN + unit : ""}`;
 }
 
-/** The fields of a disturbance that are not its kind's defaults, in words. @param {Disturbance} one */
-function fieldsInWords(one) {
-  const fields = Object.entries(kindNamed(one.kind)?.fields ?? {});
+/** The fields of a disturbance that are not its kind's defaults, in words. @param {Disturbance} disturbance */
+function fieldsInWords(disturbance) {
+  const fields = Object.entries(kindNamed(disturbance.kind)?.fields ?? {});
   // Beside the title of its kind, the only one that must be given needs no title.
   const isOnlyOne = fields.filter(([, { is_required }]) => is_required).length === 1;
   return fields
-    .filter(([name, field]) => !STEPS.includes(name) && !field.is_list && name in one && one[name] !== field.default)
+    .filter(([name, field]) =>
+      !STEPS.includes(name) && !field.is_list && name in disturbance && disturbance[name] !== field.default)
     .map(([name, field]) => {
       const title = field.is_required && isOnlyOne ? "" : `${field.title.toLowerCase()} `;
-      return `${title}${withUnit(one[name], field.unit)}`;
+      return `${title}${withUnit(disturbance[name], field.unit)}`;
     });
 }
 
@@ -154,13 +159,14 @@ const legsInWords = (legs) => `leg${legs.length > 1 ? "s" : ""}${JOIN}${legs.joi
 
 /**
  * A disturbance in a few words: "legs 1, 4 limp", "slope 8°".
- * @param {Disturbance} one
+ * @param {Disturbance} disturbance
  */
-export function inWords(one) {
-  const values = fieldsInWords(one);
-  if (one.legs) return [`${legsInWords(one.legs)} ${adjectiveOf(one.kind)}`, ...values].join(", ");
-  if (one.leg) return `leg${JOIN}${one.leg}: ${one.joint} ${one.kind} at ${withUnit(one.angle_rad, "rad")}`;
-  const title = (kindNamed(one.kind)?.title ?? one.kind).toLowerCase();
+export function inWords(disturbance) {
+  const values = fieldsInWords(disturbance);
+  const { kind, leg, legs, joint, angle_rad } = disturbance;
+  if (legs) return [`${legsInWords(legs)} ${adjectiveOf(kind)}`, ...values].join(", ");
+  if (leg) return `leg${JOIN}${leg}: ${joint} ${kind} at ${withUnit(angle_rad, "rad")}`;
+  const title = (kindNamed(kind)?.title ?? kind).toLowerCase();
   return [title, values.join(", ")].filter(Boolean).join(" ");
 }
 
@@ -168,12 +174,12 @@ export function inWords(one) {
 function joined(parts) {
   /** @type {Map<string, Disturbance>} */
   const found = new Map();
-  for (const one of parts) {
-    const { legs, ...rest } = one;
+  for (const condition of parts) {
+    const { legs, ...rest } = condition;
     const key = JSON.stringify({ ...rest, at_step: 0, until_step: 0, legs: Boolean(legs) });
     const before = found.get(key);
     const all = legs && before?.legs ? [...new Set([...before.legs, ...legs])].sort((a, b) => a - b) : legs;
-    found.set(key, all ? { ...one, legs: all } : one);
+    found.set(key, all ? { ...condition, legs: all } : condition);
   }
   return [...found.values()];
 }
@@ -186,14 +192,14 @@ export const conditionsInWords = (conditions) => joined(conditions).map(inWords)
 
 /**
  * A disturbance and its steps: "legs 1, 4 limp from step 26 to step 30". One that holds from the start names no step.
- * @param {Disturbance} one
+ * @param {Disturbance} disturbance
  */
-export function inTime(one) {
-  const lasts = kindNamed(one.kind)?.lasts ?? true;
-  const from = `${lasts ? "from" : "in"} step ${whole(one.at_step + 1)}`;
-  const words = [inWords(one)];
-  if (one.at_step > 0 || !lasts) words.push(from);
-  if (one.until_step) words.push(`to step ${whole(one.until_step)}`);
+export function inTime(disturbance) {
+  const lasts = kindNamed(disturbance.kind)?.lasts ?? true;
+  const from = `${lasts ? "from" : "in"} step ${whole(disturbance.at_step + 1)}`;
+  const words = [inWords(disturbance)];
+  if (disturbance.at_step > 0 || !lasts) words.push(from);
+  if (disturbance.until_step) words.push(`to step ${whole(disturbance.until_step)}`);
   return words.join(" ");
 }
 
@@ -207,16 +213,16 @@ export function joinedBySteps(disturbances) {
     joined(disturbances.filter(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}` === moment)));
 }
 
-/** @param {Disturbance} one */
+/** @param {Disturbance} disturbance */
 export const legsOf = ({ leg, legs }) => legs ?? (leg ? [leg] : []);
 
 /** Conditions of each leg: "limp", "femur stuck, weak". @param {Disturbance[]} conditions */
 export function legStates(conditions) {
   /** @type {Map<number, string>} */
   const states = new Map();
-  for (const one of conditions) {
-    const word = one.leg ? `${one.joint} ${one.kind}` : adjectiveOf(one.kind);
-    for (const leg of legsOf(one)) states.set(leg, [states.get(leg), word].filter(Boolean).join(", "));
+  for (const condition of conditions) {
+    const word = condition.leg ? `${condition.joint} ${condition.kind}` : adjectiveOf(condition.kind);
+    for (const leg of legsOf(condition)) states.set(leg, [states.get(leg), word].filter(Boolean).join(", "));
   }
   return states;
 }
@@ -229,10 +235,10 @@ export function legStates(conditions) {
  * @param {{ kind: string, [field: string]: any }} wanted without the leg
  */
 export function pressed(conditions, leg, wanted) {
-  const own = conditions.filter((one) => legsOf(one).includes(leg));
-  const isSame = (/** @type {Disturbance} */ one) =>
-    (one.legs && !kindNamed(one.kind)?.part.length)
-    || Object.entries(wanted).every(([name, value]) => one[name] === value);
+  const own = conditions.filter((condition) => legsOf(condition).includes(leg));
+  const isSame = (/** @type {Disturbance} */ disturbance) =>
+    (disturbance.legs && !kindNamed(disturbance.kind)?.part.length)
+    || Object.entries(wanted).every(([name, value]) => disturbance[name] === value);
   const repair = options.value?.disturbances.find(({ repairs }) => repairs)?.name ?? "";
   if (wanted.kind === repair || own.some(isSame)) return { kind: repair, legs: [leg] };
   return { ...wanted, ...(kindNamed(wanted.kind)?.fields.legs ? { legs: [leg] } : { leg }) };
@@ -269,15 +275,15 @@ export const shortName = (kind, field) => kindNamed(kind)?.fields[field]?.short 
 export function withField(text, field, value) {
   const { kind, fields } = splitText(text);
   const name = shortName(kind, field);
-  const isSame = (/** @type {[string, string]} */ [one]) => one === name || one === field;
-  if (value === "") return joinText(kind, fields.filter((one) => !isSame(one)));
-  const changed = fields.map((one) => (isSame(one) ? /** @type {[string, string]} */ ([name, value]) : one));
+  const isSame = (/** @type {[string, string]} */ [key]) => key === name || key === field;
+  if (value === "") return joinText(kind, fields.filter((pair) => !isSame(pair)));
+  const changed = fields.map((pair) => (isSame(pair) ? /** @type {[string, string]} */ ([name, value]) : pair));
   return joinText(kind, fields.some(isSame) ? changed : [...fields, [name, value]]);
 }
 
 /**
  * The text of a disturbance.
- * @param {Partial<Disturbance> & { kind: string }} one
+ * @param {Partial<Disturbance> & { kind: string }} disturbance
  */
 export const textOf = ({ kind, ...fields }) => {
   const order = Object.keys(kindNamed(kind)?.fields ?? {});
@@ -292,7 +298,7 @@ function parseField(text, field) {
   // A required field cannot be left empty.
   const setting = field.is_required ? { ...field, default: 0 } : field;
   if (!field.is_list) return parseSetting(text, setting);
-  const values = text.split(",").map((one) => parseSetting(one, setting));
+  const values = text.split(",").map((word) => parseSetting(word, setting));
   const wrong = values.find(({ mistake }) => mistake !== undefined);
   if (wrong || new Set(values.map(({ value }) => value)).size < values.length) {
     return { mistake: wrong?.mistake ?? "Enter each once" };
@@ -314,7 +320,7 @@ export function parseText(text, robot) {
   const found = { kind: name, at_step: 0 };
   const seen = new Set();
   for (const [short, value] of fields) {
-    const field = Object.keys(kind.fields).find((one) => one === short || kind.fields[one].short === short);
+    const field = Object.keys(kind.fields).find((key) => key === short || kind.fields[key].short === short);
     if (!field) return { mistake: `${kind.title}: ${quoted(short)} is none of ${namesOf(kind)}` };
     if (seen.has(field)) return { mistake: `${kind.title}: give ${quoted(short)} once` };
     seen.add(field);
@@ -346,7 +352,7 @@ const namesOf = ({ fields }) => listed(Object.values(fields).map(({ short }) => 
  * @param {string} text
  */
 export const splitWorlds = (text) =>
-  text.split(/;|,(?=\s*(?:[a-z]|$))/i).map((one) => one.trim()).filter(Boolean);
+  text.split(/;|,(?=\s*(?:[a-z]|$))/i).map((piece) => piece.trim()).filter(Boolean);
 
 /**
  * Disturbances of a world, or why there is no such world.

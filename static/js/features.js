@@ -57,7 +57,7 @@ export const installFeatures = async () => install(await Promise.all(
 /** Load the code that pages of a role alone need, and run it. @param {string} role */
 export async function addCodeFor(role) {
   const added = await Promise.all(features.peek().filter(({ codeFor }) => codeFor === role).map(withCode));
-  const isNew = added.filter(({ name }) => features.peek().find((one) => one.name === name)?.codeFor);
+  const isNew = added.filter(({ name }) => features.peek().find((feature) => feature.name === name)?.codeFor);
   features.value = features.peek().map((feature) => {
     const { codeFor: _, ...whole } = isNew.find(({ name }) => name === feature.name) ?? feature;
     return isNew.some(({ name }) => name === feature.name) ? whole : feature;

@@ -67,7 +67,7 @@ const REPEATED = "disturb";
  */
 function read(field, text, agents) {
   const declared = bounded(field, settingsOf(agents)[field] ?? laneSettings(agents)[field] ?? served().settings[field]);
-  return (READERS[field] ?? ((/** @type {string} */ one) => parseSetting(one, declared)))(text);
+  return (READERS[field] ?? ((/** @type {string} */ typed) => parseSetting(typed, declared)))(text);
 }
 
 /**
@@ -258,7 +258,7 @@ export function enter(field, text) {
  */
 function isDefault(field, text) {
   const { agent, lanes } = form.value;
-  const own = [...learnersInUse.value.map((one) => settingsOf([one])), laneSettings(lanes)].map((settings) =>
+  const own = [...learnersInUse.value.map((learner) => settingsOf([learner])), laneSettings(lanes)].map((settings) =>
     Object.fromEntries(Object.entries(settings).map(([name, setting]) => [name, setting.default])));
   const common = { ...commonDefaults(), agent: served().defaults.training.agent, lanes: defaultLanes(agent) };
   const found = [common, ...own].filter((defaults) => field in defaults);

@@ -23,12 +23,15 @@ import { curve } from "./training.js";
 
 /** What happens in a run, in words. @param {Run | null} run */
 const happenedIn = (run) => joinedBySteps(run ? disturbancesOf(run) : [])
-  .map((one) => ({ at_step: one.at_step, until_step: one.until_step, words: sentence(inTime(one)) }));
+  .map((disturbance) => {
+    const { at_step, until_step } = disturbance;
+    return { at_step, until_step, words: sentence(inTime(disturbance)) };
+  });
 
 /** The tests of the practice on stage, in its own steps. @param {Run | null} run */
 function testsOf(run) {
   const known = curve.value?.run.id === run?.id ? curve.value : null;
-  return (known?.points ?? []).map((one) => ({ ...one, step: one.step - (known?.from ?? 0) }));
+  return (known?.points ?? []).map((point) => ({ ...point, step: point.step - (known?.from ?? 0) }));
 }
 
 /** Of which run the ghosts are, and how far they came; null without any. */

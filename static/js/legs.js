@@ -41,7 +41,7 @@ export const closeLegs = () => {
 
 /** Open the menu of a leg that is numbered. @param {number} leg */
 export function pickLeg(leg) {
-  const point = legPoints.peek().find((one) => one.leg === leg);
+  const point = legPoints.peek().find((candidate) => candidate.leg === leg);
   const lane = legsOf.peek();
   if (point && lane !== null) picked.value = { ...point, lane, what: "leg" };
 }

@@ -26,7 +26,7 @@ import { batch, effect, signal } from "@preact/signals";
 const TEXT = { read: (text) => text || null, write: (text) => text };
 /** @type {Codec<string[]>} */
 const LIST = {
-  read: (text) => [...new Set(text.split(",").map((one) => one.trim()).filter(Boolean))],
+  read: (text) => [...new Set(text.split(",").map((word) => word.trim()).filter(Boolean))],
   write: (list) => list.join(",") || null,
 };
 /** An empty list is a choice, too. @type {Codec<string[] | null>} */
@@ -66,7 +66,7 @@ const severalOf = (words) => ({
   ...LIST,
   read: (text) => {
     const given = LIST.read(text) ?? [];
-    return given.every((one) => words.includes(one)) ? given : undefined;
+    return given.every((word) => words.includes(word)) ? given : undefined;
   },
   words,
 });
@@ -260,7 +260,7 @@ function partsOf({ search, hash }) {
 function readField({ part, name, initial, read, words }, query) {
   if (name === null) {
     const others = ENTRIES.filter(([, field]) => field.part === part).map(([, field]) => field.name);
-    return new URLSearchParams([...query].filter(([one]) => !others.includes(one)));
+    return new URLSearchParams([...query].filter(([key]) => !others.includes(key)));
   }
   const text = query.get(name);
   const value = text === null ? initial : read(text);
@@ -312,7 +312,7 @@ export const linkTo = (values) => `${location.origin}${location.pathname}${value
  */
 export function asTexts({ settings = {}, ...form }) {
   const pairs = Object.entries({ ...form, ...settings }).flatMap(([name, value]) => {
-    if (name === "disturb" && Array.isArray(value)) return value.map((one) => [name, String(one)]);
+    if (name === "disturb" && Array.isArray(value)) return value.map((item) => [name, String(item)]);
     if (Array.isArray(value)) return [[name, value.join(",")]];
     return [[name, value !== null && typeof value === "object" ? JSON.stringify(value) : String(value)]];
   });

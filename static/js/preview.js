@@ -59,7 +59,7 @@ export function objections({ groups, tips, out_of_reach, beside_grid, table_fits
     beside_grid && `It walks beside its grid: ${beside_grid}.`,
     tips && `It tips while legs ${listed(tipping)} swing: its centre of mass is not between the other feet.`,
     !table_fits && `A table of ${whole(values)} values is too large: only learners without one can start.`,
-  ].filter((one) => typeof one === "string");
+  ].filter((sentence) => typeof sentence === "string");
 }
 
 /**
@@ -68,7 +68,7 @@ export function objections({ groups, tips, out_of_reach, beside_grid, table_fits
  * @param {number} leg
  */
 export function moveLeg({ gait, groups }, leg) {
-  const parts = groups.map(({ legs }) => legs.filter((one) => one !== leg));
+  const parts = groups.map(({ legs }) => legs.filter((other) => other !== leg));
   const from = groups.findIndex(({ legs }) => legs.includes(leg));
   const isAlone = parts[from].length === 0;
   const to = (from + 1) % (isAlone ? parts.length : parts.length + 1);

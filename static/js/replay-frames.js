@@ -40,7 +40,7 @@ export function decode(data) {
     if (Array.isArray(value)) return value.map(resolve);
     if (value === null || typeof value !== "object") return value;
     if ("__binary_index" in value) return new (ARRAYS[value.dtype] ?? Uint8Array)(buffers[value.__binary_index]);
-    return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, resolve(one)]));
+    return Object.fromEntries(Object.entries(value).map(([name, item]) => [name, resolve(item)]));
   };
   for (const frame of frames.frames) frame.messages = resolve(frame.messages);
   return frames;
@@ -120,7 +120,7 @@ export class SceneState {
    */
   showFrame(frames, index, shown) {
     const isNext = shown >= 0 && shown < index && index - shown <= MAX_STEPS;
-    const messages = frames.slice(isNext ? shown + 1 : 0, index + 1).flatMap((one) => one.messages);
+    const messages = frames.slice(isNext ? shown + 1 : 0, index + 1).flatMap((frame) => frame.messages);
     return isNext ? this.follow(messages) : this.jump(messages);
   }
 
@@ -133,8 +133,8 @@ export class SceneState {
   put(state, message) {
     const { entity, phase, key } = this.slotOf(message);
     if (phase === "remove") {
-      const removed = [...state.keys()].filter((one) => one === entity || one.startsWith(`${entity}/`));
-      for (const one of removed) state.delete(one);
+      const removed = [...state.keys()].filter((name) => name === entity || name.startsWith(`${entity}/`));
+      for (const name of removed) state.delete(name);
       return removed;
     }
     // A copy, since states share what they have in common.

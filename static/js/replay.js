@@ -284,7 +284,7 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   const messages = state.showFrame(loaded.frames, index, shown.address === address ? shown.index : -1);
   draw([...messages, follower.centring(state, newest, page.camera.peek(), elapsed_s)]);
   shown = { address, index, time_s: newest.time_s, frame: newest, view: page.camera.peek() };
-  tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
+  tell(loaded.frames.slice(0, index + 1).findLast((frame) => frame.scene) ?? newest, now);
 }
 
 /** @param {string} address */

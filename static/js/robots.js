@@ -46,7 +46,7 @@ export const canonical = (value) =>
       : part) ?? "";
 
 /** @type {(one: unknown, other: unknown) => boolean} */
-export const isSame = (one, other) => canonical(one) === canonical(other);
+export const isSame = (first, other) => canonical(first) === canonical(other);
 
 /** @type {[string, string][]} */
 const UNITS = [["_nm", "N·m"], ["_kg", "kg"], ["_m", "m"], ["_s", "s"]];

@@ -55,7 +55,7 @@ export const shownColumns = computed(() => {
 /** Show a column, or no longer; this browser keeps that. @param {string} name */
 export function toggleColumn(name) {
   const shown = shownColumns.peek();
-  const others = shown.filter((one) => one !== name);
+  const others = shown.filter((column) => column !== name);
   const chosen = others.length < shown.length ? others : [...shown, name];
   kept.value = chosen.join(",");
   page.columns.value = chosen;

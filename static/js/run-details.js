@@ -37,8 +37,8 @@ export const isOpenedGone = computed(() =>
 export const subjects = computed(() => {
   if (isOfSelection.value) return selected.value;
   if (isOpenedGone.value) return [];
-  const one = opened.value ?? selected.value[0] ?? listedRuns.value[0];
-  return one ? [one] : [];
+  const run = opened.value ?? selected.value[0] ?? listedRuns.value[0];
+  return run ? [run] : [];
 });
 
 // ---- their curves
@@ -66,11 +66,11 @@ export function followDetails() {
 export function bestPointOf(run) {
   const { points } = curveOf(run);
   const [first, ...others] = points.slice(1);
-  return first ? others.reduce((best, one) => (one.distance_m > best.distance_m ? one : best), first) : null;
+  return first ? others.reduce((best, point) => (point.distance_m > best.distance_m ? point : best), first) : null;
 }
 
 /** Greedy's distance, where it is the same for all trainings [m]; else null. @param {Run[]} trainings */
 export function commonGreedy(trainings) {
   const [first = null, ...others] = trainings.map(greedyOf);
-  return others.every((one) => one === first) ? first : null;
+  return others.every((greedy) => greedy === first) ? first : null;
 }

@@ -57,7 +57,7 @@ const keyOf = ({ fields }, name) => fields[name]?.key ?? "";
 
 /** Number of different settings. @type {(members: Known[], names: string[]) => number} */
 const distinct = (members, names) =>
-  new Set(members.map((one) => canonical(names.map((name) => keyOf(one, name))))).size;
+  new Set(members.map((member) => canonical(names.map((name) => keyOf(member, name))))).size;
 
 /** Whether runs differ in a field, or fill most of a grid of two. @param {Sweep} sweep */
 function isSweep({ varied, members }) {
@@ -74,7 +74,7 @@ function isSweep({ varied, members }) {
  */
 function sweepsOver(known, all, varied) {
   const fixed = all.filter((name) => !varied.includes(name));
-  const found = groupedBy(known, (one) => fixed.map((name) => keyOf(one, name)).join("\n"));
+  const found = groupedBy(known, (entry) => fixed.map((name) => keyOf(entry, name)).join("\n"));
   return [...found.values()].map((members) => ({ varied, members })).filter(isSweep);
 }
 
@@ -98,7 +98,7 @@ export function sweepsOf(runs) {
   const all = variedIn(known.map(({ fields }) => fields));
   const single = all.flatMap((name) => sweepsOver(known, all, [name]));
   const names = [...new Set(single.flatMap(({ varied }) => varied))];
-  const pairs = names.flatMap((one, at) => names.slice(at + 1).map((other) => [one, other]));
+  const pairs = names.flatMap((name, at) => names.slice(at + 1).map((other) => [name, other]));
   const waiting = [...single, ...pairs.flatMap((pair) => sweepsOver(known, all, pair))];
   const taken = new Set();
   /** @type {Sweep[]} */
@@ -212,7 +212,7 @@ function byRace(runs, everyRun) {
   /** @type {Map<string, Group>} */
   const groups = new Map();
   const own = new Map(runs.map((run) => [run.id, raceOf(run, races)]));
-  for (const race of new Set([...own.values()].filter((one) => one !== null))) {
+  for (const race of new Set([...own.values()].filter((item) => item !== null))) {
     const members = runs.filter((run) => own.get(run.id) === race);
     const inside = [...members.filter(({ kind }) => kind === "race"), ...members.filter(({ kind }) => kind !== "race")];
     const group = groupOf(`race ${race.id}`, titleOf(race), inside, factsOf(race));

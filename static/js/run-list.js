@@ -42,7 +42,7 @@ const passes = (run) => {
   const { kind, state, search, tag } = filters.value;
   const { tags = [], notes = "" } = "damaged" in run ? {} : run;
   const isFound = [run.name ?? "", run.id, ...tags, notes].some((text) => folded(text).includes(folded(search)));
-  const isTagged = tag === "" || tags.some((one) => folded(one) === folded(tag));
+  const isTagged = tag === "" || tags.some((other) => folded(other) === folded(tag));
   return ["", run.kind ?? kind].includes(kind) && ["", run.state].includes(state) && isFound && isTagged;
 };
 

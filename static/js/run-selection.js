@@ -37,7 +37,7 @@ export function setSelected(id, isOn, isRange = false) {
   const from = isRange && anchor !== null ? shown.indexOf(anchor) : -1;
   const to = shown.indexOf(id);
   const range = from < 0 ? [id] : shown.slice(Math.min(from, to), Math.max(from, to) + 1);
-  const left = [...ids.value].filter((one) => !range.includes(one));
+  const left = [...ids.value].filter((other) => !range.includes(other));
   select(isOn ? [...left, ...range] : left);
   anchor = id;
 }

@@ -63,7 +63,7 @@ function ofPractice(run) {
 /** A race with one learner has the fields of its practice, too. @param {Run} run @returns {Fields} */
 function ofRace(run) {
   const { lanes, steps, seed, branch_from: branch = null } = run.config;
-  const [practice, ...others] = trainingIds(run).map(runOf).filter((one) => one !== null).map(ofPractice);
+  const [practice, ...others] = trainingIds(run).map(runOf).filter((training) => training !== null).map(ofPractice);
   const isOne = practice && others.length === 0;
   // Its learner is one of the lanes.
   const { seed: practice_seed, agent, ...own } = isOne ? practice : /** @type {Partial<Fields>} */ ({});

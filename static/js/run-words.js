@@ -159,7 +159,7 @@ export function namesAmong(runs) {
   const names = runs.map((run, n) =>
     (isNamed(run) || !isShort ? titleOf(run) : beginning(differenceInWords(fields[n], varied))));
   return names.map((name, n) => {
-    const before = names.slice(0, n).filter((one) => one === name).length;
+    const before = names.slice(0, n).filter((other) => other === name).length;
     return before ? `${name} (${before + 1})` : name;
   });
 }

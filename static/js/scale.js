@@ -23,7 +23,7 @@ export function ticks(high, count = 5, low = 0) {
   if (!(high > low)) return [low];
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 2.5, 5].map((n) => n * power).find((one) => one >= rough) ?? 10 * power;
+  const step = [1, 2, 2.5, 5].map((n) => n * power).find((candidate) => candidate >= rough) ?? 10 * power;
   const first = Math.ceil(low / step - 1e-9);
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, n) => (first + n) * step);
 }

@@ -348,5 +348,5 @@ export function bounded(field, setting) {
 /** Whether a choice of a field can be chosen. @param {string} field @param {unknown} choice */
 export function isAllowed(field, choice) {
   const choices = limits.value?.[field]?.choices ?? null;
-  return choices === null || choices.some((one) => one === choice);
+  return choices === null || choices.some((valid) => valid === choice);
 }

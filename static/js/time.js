@@ -63,7 +63,7 @@ function ofRace(isComputing) {
   return { unit: "s", unit_s: 1, end, picture, computed: Math.min(computed_s, end), isComputing };
 }
 
-/** @param {Pick<Scale, "unit">} one @param {number} at */
+/** @param {Pick<Scale, "unit">} scale @param {number} at */
 export const positionInWords = ({ unit }, at) =>
   (unit === "s" ? `${at.toFixed(1)}\u00a0s` : `step ${whole(Math.round(at))}`);
 
@@ -86,14 +86,14 @@ export const marks = computed(() => {
 /** @param {Run} run @returns {Mark[]} */
 function marksOfPractice(run) {
   const known = curve.value?.run.id === run.id ? curve.value : null;
-  const evaluations = (known?.points ?? []).filter(({ step }) => step > (known?.from ?? 0)).map((one) => ({
-    kind: "evaluation", at: one.step - (known?.from ?? 0), isMinor: true, text: `test: ${metres(one.distance_m)}`,
+  const evaluations = (known?.points ?? []).filter(({ step }) => step > (known?.from ?? 0)).map((point) => ({
+    kind: "evaluation", at: point.step - (known?.from ?? 0), isMinor: true, text: `test: ${metres(point.distance_m)}`,
   }));
-  const changes = rateChanges(run).map((one) => ({
-    kind: "change", at: one.step, text: rateInWords(run.config.agent, one),
+  const changes = rateChanges(run).map((rateChange) => ({
+    kind: "change", at: rateChange.step, text: rateInWords(run.config.agent, rateChange),
   }));
   const happened = disturbancesOf(run).filter(({ at_step }) => at_step > 0)
-    .map((one) => ({ kind: "disturbance", at: one.at_step, text: inWords(one) }));
+    .map((disturbance) => ({ kind: "disturbance", at: disturbance.at_step, text: inWords(disturbance) }));
   const fell = run.result?.fell_at_step ?? null;
   const falls = fell === null ? [] : [{ kind: "fall", at: fell, text: "falls" }];
   return [...evaluations, ...changes, ...happened, ...falls];
@@ -133,9 +133,9 @@ function marksOfLane(race, track, lane, finish_m) {
   if (fell !== null && ends?.[fell] !== undefined) {
     found.push({ kind: "fall", at: ends[fell], lane, text: `${name} falls` });
   }
-  for (const one of disturbancesOf(race)) {
-    if (!one.at_step || ends?.[one.at_step] === undefined) continue;
-    found.push({ kind: "disturbance", at: ends[one.at_step], lane, text: `${inWords(one)}, ${name}` });
+  for (const disturbance of disturbancesOf(race)) {
+    if (!disturbance.at_step || ends?.[disturbance.at_step] === undefined) continue;
+    found.push({ kind: "disturbance", at: ends[disturbance.at_step], lane, text: `${inWords(disturbance)}, ${name}` });
   }
   return found;
 }
@@ -220,5 +220,5 @@ export const laneRows = computed(() => {
   }));
 });
 
-/** A mark's text as it begins a sentence. @param {Mark} one */
+/** A mark's text as it begins a sentence. @param {Mark} mark */
 export const markInWords = ({ text }) => sentence(text);

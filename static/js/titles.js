@@ -8,7 +8,7 @@ import { options } from "./store.js";
 /** @import { Described, GaitConfig, RobotConfig } from "./types.js" */
 
 /** @type {(list: Described[] | undefined, name: string) => Described | undefined} */
-const find = (list, name) => list?.find((one) => one.name === name);
+const find = (list, name) => list?.find((item) => item.name === name);
 
 /** @param {GaitConfig} gait */
 export const gaitTitle = (gait) =>
@@ -135,7 +135,7 @@ export function fieldTitle(field) {
  * @param {string[]} fields
  */
 export const variedFields = (settings, fields) =>
-  fields.filter((field) => new Set(settings.map((one) => one[field]).filter((one) => one !== null)).size > 1);
+  fields.filter((field) => new Set(settings.map((values) => values[field]).filter((value) => value !== null)).size > 1);
 
 /** @type {Record<string, (name: string) => string>} */
 const VALUE_TITLES = {

@@ -47,8 +47,8 @@ function chainOf(training) {
 const evaluationsOf = (id) => {
   /** @type {Map<number, Evaluation>} */
   const byStep = new Map();
-  for (const one of [...(requested.value[id] ?? []), ...(evaluations.value[id] ?? [])]) {
-    byStep.set(one.step, one);
+  for (const evaluation of [...(requested.value[id] ?? []), ...(evaluations.value[id] ?? [])]) {
+    byStep.set(evaluation.step, evaluation);
   }
   return [...byStep.values()].sort((a, b) => a.step - b.step);
 };
@@ -77,10 +77,10 @@ export function curveOf(run, upTo = () => Infinity) {
     if (part !== trainings[0]) blocks.push(from);
     const last = upTo(part);
     const shown = evaluationsOf(part.id).filter(({ step }) => step <= last);
-    points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
+    points.push(...shown.map((evaluation) => ({ ...evaluation, step: from + evaluation.step })));
     changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + last));
     const happened = disturbancesOf(part).filter(({ at_step }) => at_step <= last);
-    disturbances.push(...happened.map((one) => movedBy(one, from)));
+    disturbances.push(...happened.map((disturbance) => movedBy(disturbance, from)));
     if (part !== run) from += part.progress?.done ?? 0;
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
@@ -89,9 +89,9 @@ export function curveOf(run, upTo = () => Infinity) {
   return { run, points, from, to, greedy_m, best_known_m, blocks, changes, disturbances: joinedBySteps(disturbances) };
 }
 
-/** A disturbance in the steps of all practice. @type {(one: Disturbance, from: number) => Disturbance} */
-const movedBy = (one, from) => ({
-  ...one, at_step: from + one.at_step, ...(one.until_step ? { until_step: from + one.until_step } : {}),
+/** A disturbance in the steps of all practice. @type {(disturbance: Disturbance, from: number) => Disturbance} */
+const movedBy = ({ at_step, until_step, ...disturbance }, from) => ({
+  ...disturbance, at_step: from + at_step, ...(until_step ? { until_step: from + until_step } : {}),
 });
 
 /**
@@ -109,7 +109,7 @@ const greedyOf = ({ id, result, greedy_distance_m }) =>
 
 /** Of the world as it is now: the end's, the newest that was announced, or that of the request. @param {Run} run */
 const bestKnownOf = ({ id, result }) =>
-  [result?.best_known_m, bestKnown.value[id], requestedBest.value[id]].find((one) => one !== undefined) ?? null;
+  [result?.best_known_m, bestKnown.value[id], requestedBest.value[id]].find((best_m) => best_m !== undefined) ?? null;
 
 /**
  * All steps of practice behind a training's table.
@@ -227,8 +227,9 @@ export function configAtEnd(run) {
   const { pace: newest, ...changed } = changedValues(run);
   const values = Object.entries(changed).flatMap(([name, value]) => {
     if (name in run.config.settings) return [[name, value]];
-    const same = Object.keys(settings).filter((one) => settings[one].symbol === (live_settings[name]?.symbol ?? name));
-    return same.map((one) => [one, value]);
+    const symbol = live_settings[name]?.symbol ?? name;
+    const same = Object.keys(settings).filter((setting) => settings[setting].symbol === symbol);
+    return same.map((setting) => [setting, value]);
   });
   const pace = /** @type {RunConfig["pace"]} */ (newest ?? run.config.pace);
   return { ...run.config, pace, settings: { ...run.config.settings, ...Object.fromEntries(values) } };
@@ -246,7 +247,7 @@ export function rateChanges({ changes = [], config }, offset = 0) {
   for (const { step, settings = {} } of changes) {
     for (const [name, value] of Object.entries(settings)) {
       if (value === null) continue;
-      const before = found.findLast((one) => one.name === name);
+      const before = found.findLast((change) => change.name === name);
       const isBurst = before && offset + step - before.step <= BURST_SHARE * config.steps;
       if (isBurst) Object.assign(before, { value, step: offset + step });
       else found.push({ name, value, step: offset + step });
@@ -268,7 +269,7 @@ export function rateInWords(agent, { name, value }) {
  */
 export const changesInWords = (agent, changes) =>
   [...new Set(changes.map(({ name }) => name))].map((name) => {
-    const own = changes.filter((one) => one.name === name);
+    const own = changes.filter((change) => change.name === name);
     const last = own[own.length - 1];
     const others = own.length > 1 ? ` (${count(own.length, "change")})` : "";
     return `${rateInWords(agent, last)} from step ${whole(last.step)}${others}`;

@@ -33,8 +33,8 @@ const FIRST_TAB = "board";
 
 const keptDepth = storedText("depth", DEPTHS[0]);
 
-/** @param {Depth} one */
-const rankOf = (one) => DEPTHS.indexOf(one);
+/** @param {Depth} name */
+const rankOf = (name) => DEPTHS.indexOf(name);
 
 /** The name of a tab that is there: a link, a card or a key may name one whose feature is left out. */
 /** @type {(name: string | null) => string | null} */
@@ -53,11 +53,11 @@ const chosenDepth = computed(() =>
 export const depth = computed(() => {
   const needed = [page.tab.value, page.pinned.value].map(existing)
     .map((name) => (name === null ? DEPTHS[0] : neededFor(name)));
-  return [chosenDepth.value, ...needed].reduce((most, one) => (rankOf(one) > rankOf(most) ? one : most));
+  return [chosenDepth.value, ...needed].reduce((most, name) => (rankOf(name) > rankOf(most) ? name : most));
 });
 
-/** Whether at least so much is shown. @param {Depth} one */
-export const isAtLeast = (one) => rankOf(depth.value) >= rankOf(one);
+/** Whether at least so much is shown. @param {Depth} name */
+export const isAtLeast = (name) => rankOf(depth.value) >= rankOf(name);
 
 /** Whether a feature hides a tab at present. @param {string} tab */
 const isHidden = (tab) => features.value.some(({ hidesTab }) => hidesTab?.(tab));
@@ -86,7 +86,7 @@ export const pinnedTab = computed(() =>
 export const openTab = (name) => {
   if (existing(name) === null) return;
   change({
-    tab: name, hidden: page.hidden.peek().filter((one) => one !== "panel"),
+    tab: name, hidden: page.hidden.peek().filter((field) => field !== "panel"),
     // The tab that was pinned is the open one now.
     ...(page.pinned.peek() === name ? { pinned: null } : {}),
   });
@@ -101,16 +101,19 @@ export const openExplanation = () => {
 export const togglePin = () => {
   const pinned = page.pinned.peek();
   if (pinned !== null) change({ pinned: null });
-  else change({ pinned: tab.peek(), tab: tabs.peek().find((one) => one !== tab.peek()) ?? null });
+  else change({ pinned: tab.peek(), tab: tabs.peek().find((other) => other !== tab.peek()) ?? null });
 };
 
-/** Choose a depth, which this browser keeps; a tab that it does not offer gives way to the board. @param {Depth} one */
-export function setDepth(one) {
-  keptDepth.value = one;
+/**
+ * Choose a depth, which this browser keeps; a tab that it does not offer gives way to the board.
+ * @param {Depth} level
+ */
+export function setDepth(level) {
+  keptDepth.value = level;
   const isOffered = (/** @type {string | null} */ name) =>
-    name === null || rankOf(kinds.value[name]?.depth ?? DEPTHS[0]) <= rankOf(one);
+    name === null || rankOf(kinds.value[name]?.depth ?? DEPTHS[0]) <= rankOf(level);
   change({
-    depth: one,
+    depth: level,
     tab: isOffered(page.tab.peek()) ? page.tab.peek() : null,
     pinned: isOffered(page.pinned.peek()) ? page.pinned.peek() : null,
   });
@@ -125,5 +128,5 @@ export const isPanelHidden = computed(() => page.hidden.value.includes("panel") 
 /** Hide a part of the page, or show it again. @param {string} part */
 export const toggleHidden = (part) => {
   const hidden = page.hidden.peek();
-  page.hidden.value = hidden.includes(part) ? hidden.filter((one) => one !== part) : [...hidden, part];
+  page.hidden.value = hidden.includes(part) ? hidden.filter((other) => other !== part) : [...hidden, part];
 };

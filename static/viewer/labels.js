@@ -34,7 +34,7 @@
       write(label, message.updates.text);
       message.updates.text = "";
     } else if (type === "RemoveSceneNodeMessage") {
-      for (const one of labels.keys()) if (one === name || one.startsWith(`${name}/`)) remove(one);
+      for (const label of labels.keys()) if (label === name || label.startsWith(`${name}/`)) remove(label);
     }
   };
 
@@ -204,7 +204,7 @@
     const left = Math.max(EDGE_PX, Math.min(x - width / 2, picture.width - width - EDGE_PX));
     const offset = { bottom: -height, center: -height / 2, top: 0 }[anchor.split("-")[0]];
     const boxAt = (top) => ({ left, top, right: left + width, bottom: top + height });
-    const blocking = (box) => taken.find((one) => intersects(one, box));
+    const blocking = (box) => taken.find((other) => intersects(other, box));
     const search = (direction) => {
       let box = boxAt(Math.round(Math.max(EDGE_PX, Math.min(y + offset, picture.height - height - EDGE_PX))));
       for (let other = blocking(box); other; other = blocking(box)) {

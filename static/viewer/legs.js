@@ -52,7 +52,7 @@
       if (batched_positions) batches.get(name).positions = floats(batched_positions);
       if (batched_wxyzs) batches.get(name).wxyzs = floats(batched_wxyzs);
     } else if (type === "RemoveSceneNodeMessage") {
-      for (const one of batches.keys()) if (one === name || one.startsWith(`${name}/`)) batches.delete(one);
+      for (const batch of batches.keys()) if (batch === name || batch.startsWith(`${name}/`)) batches.delete(batch);
     }
   };
 
@@ -114,12 +114,12 @@
   };
 
   const nearest = (list, far_px) =>
-    list.reduce((best, one) => (one.distance < (best?.distance ?? far_px) ? one : best), null);
+    list.reduce((best, candidate) => (candidate.distance < (best?.distance ?? far_px) ? candidate : best), null);
 
   const pickAt = (point) => {
     const toBody = ({ at }) => Math.hypot(point.x - at.x, point.y - at.y);
-    const body = nearest(bodies().map((one) => ({ ...one, distance: toBody(one) })), BODY_PX);
-    const leg = nearest(links().map((one) => ({ ...one, distance: distanceTo(one, point) })), LEG_PX);
+    const body = nearest(bodies().map((candidate) => ({ ...candidate, distance: toBody(candidate) })), BODY_PX);
+    const leg = nearest(links().map((link) => ({ ...link, distance: distanceTo(link, point) })), LEG_PX);
     if (body && (!leg || body.distance < BODY_PX / 2)) return { ...point, lane: body.lane, what: "body", leg: null };
     if (leg) return { ...point, lane: leg.lane, what: "leg", leg: leg.leg };
     return isGround(point) ? { ...point, lane: 0, what: "ground", leg: null } : null;
@@ -158,8 +158,8 @@
   /** Of each leg the lowest end of its links, where its number stands. */
   const feetOf = (lane) => {
     const lowest = new Map();
-    for (const one of links()) {
-      if (one.lane === lane && one.low < (lowest.get(one.leg)?.low ?? Infinity)) lowest.set(one.leg, one);
+    for (const link of links()) {
+      if (link.lane === lane && link.low < (lowest.get(link.leg)?.low ?? Infinity)) lowest.set(link.leg, link);
     }
     const places = [...lowest].map(([leg, { to }]) => ({ leg, x: Math.round(to.x), y: Math.round(to.y) }));
     return places.sort((a, b) => a.leg - b.leg);

@@ -21,11 +21,11 @@ const MIB = 2 ** 20;
 let keys = 0;
 
 /** @param {number} key */
-export const dismissImport = (key) => (imports.value = imports.value.filter((one) => one.key !== key));
+export const dismissImport = (key) => (imports.value = imports.value.filter((entry) => entry.key !== key));
 
 /** @type {(key: number, changes: Partial<Imported>) => void} */
 const setImport = (key, changes) =>
-  (imports.value = imports.value.map((one) => (one.key === key ? { ...one, ...changes } : one)));
+  (imports.value = imports.value.map((entry) => (entry.key === key ? { ...entry, ...changes } : entry)));
 
 /**
  * Take in files one after the other; each tells what came of it.

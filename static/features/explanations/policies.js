@@ -121,16 +121,16 @@ async function wholeTable(id, isWanted) {
 
 /**
  * The states in which two learners that know them would move otherwise, the most visited first.
- * @param {WholeTable} one
+ * @param {WholeTable} first
  * @param {WholeTable} other
  */
-export function differencesOf(one, other) {
+export function differencesOf(first, other) {
   /** @type {DifferentState[]} */
   const different = [];
-  const compared = Math.min(one.values.length, other.values.length);
+  const compared = Math.min(first.values.length, other.values.length);
   const known = { both: 0, one: 0, other: 0 };
   for (let index = 0; index < compared; index += 1) {
-    const bests = /** @type {[Best, Best]} */ ([bestIn(one, index), bestIn(other, index)]);
+    const bests = /** @type {[Best, Best]} */ ([bestIn(first, index), bestIn(other, index)]);
     const [inOne, inOther] = bests.map(({ visits }) => visits > 0);
     if (inOne && inOther) known.both += 1;
     else if (inOne) known.one += 1;
@@ -144,9 +144,9 @@ export function differencesOf(one, other) {
 /** @type {(table: WholeTable, index: number) => Best} */
 function bestIn(table, index) {
   const move = table.best[index];
-  const visits = table.visits[index].reduce((/** @type {number} */ sum, one) => sum + (one ?? 0), 0);
+  const visits = table.visits[index].reduce((/** @type {number} */ sum, count) => sum + (count ?? 0), 0);
   return { move, value: table.values[index][columnOf(move, table)] ?? null, visits };
 }
 
 /** Whether two tables have the same states and moves. @type {(one: WholeTable, other: WholeTable) => boolean} */
-export const haveSameStates = (one, other) => isSame([one.pairs, one.cells_m], [other.pairs, other.cells_m]);
+export const haveSameStates = (first, other) => isSame([first.pairs, first.cells_m], [other.pairs, other.cells_m]);

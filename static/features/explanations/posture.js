@@ -94,7 +94,7 @@ function followView() {
   let before = [];
   return effect(() => {
     const now = [drawHere.value, page.run.value, plan.value === null];
-    if (now.some((one, number) => one !== before[number])) giveUpState();
+    if (now.some((cell, number) => cell !== before[number])) giveUpState();
     before = now;
   });
 }

@@ -228,7 +228,7 @@ export function cellInWords(shown, row, column) {
     untried: value === 0 ? "never tried" : `never tried; taken for ${fineMillimetres(value)}`,
     tried: `${fineMillimetres(value)}, tried ${visits === 1 ? "once" : count(visits, "time")}`,
   }[kind];
-  const isKnown = shown.visits[row].some((one) => Boolean(one));
+  const isKnown = shown.visits[row].some(Boolean);
   const others = isKnown ? `best here: ${best}` : "nothing tried here";
   const about = isBest && kind === "tried" ? "the best move here" : others;
   return { state: stateInWords(cells, shown), move: moveInWords(move, shown), worth, about };
@@ -252,8 +252,8 @@ export function ruleNumber(value) {
 /** A value of the table, to the digit at which another one differs. @type {(value: number, other: number) => string} */
 export function comparedNumber(value, other) {
   for (let digits = 5; digits <= 17; digits += 1) {
-    const [one, two] = [value, other].map((number) => number.toPrecision(digits));
-    if (one !== two || digits === 17) return `${one.replace("-", "−")}${THIN_SPACE}m`;
+    const [first, second] = [value, other].map((number) => number.toPrecision(digits));
+    if (first !== second || digits === 17) return `${first.replace("-", "−")}${THIN_SPACE}m`;
   }
   return String(value);
 }

@@ -124,7 +124,7 @@ const BAR = 0.72;
 
 /**
  * The bars of a leg as one path: a unit high, in seconds.
- * @param {{ stance: Range[] }} one
+ * @param {{ stance: Range[] }} range
  * @param {number} row
  */
 const barsOf = ({ stance }, row) =>

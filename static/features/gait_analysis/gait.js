@@ -227,7 +227,7 @@ export function lineOf(figures, { source, values, factor = 1 }) {
  */
 export function extentOf(lists, { least, zero = false }) {
   const reduce = (/** @type {(a: number, b: number) => number} */ pick, /** @type {number} */ start) =>
-    lists.reduce((best, values) => values.reduce((one, value) => pick(one, value), best), start);
+    lists.reduce((best, values) => values.reduce((picked, value) => pick(picked, value), best), start);
   const low = zero ? 0 : reduce(Math.min, Infinity);
   const high = reduce(Math.max, -Infinity);
   const missing = Math.max(0, least - (high - low));

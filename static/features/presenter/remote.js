@@ -32,8 +32,8 @@ export function Remote() {
           words="End at time-out" />
         <${Toggle} isOn=${is_blank} onClick=${toggleBlank} icon="stop" words="Blank" />
       </div>
-      <${Segments} label="QR code" value=${code} onValue=${(/** @type {any} */ one) => tell({ code: one })}
-        choices=${CODES.map((one) => [one, `Code ${one}`])} />
+      <${Segments} label="QR code" value=${code} onValue=${(/** @type {any} */ size) => tell({ code: size })}
+        choices=${CODES.map((size) => [size, `Code ${size}`])} />
       <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${runPrimaryAction}>
         ${primaryAction.value.label}
       </button>

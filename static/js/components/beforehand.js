@@ -22,7 +22,7 @@ export function Beforehand({ hasPlan, isEdited }) {
       <div>
         ${isEdited && html`<p><b>Groups</b> A press on a leg moves it to the next group.</p>`}
         <p class="dim">${inWords(answer)}</p>
-        ${objections(answer).map((one) => html`<p class="notice" role="status">${one}</p>`)}
+        ${objections(answer).map((objection) => html`<p class="notice" role="status">${objection}</p>`)}
         ${better && html`
           <button class="link" onClick=${() => takeBetter(answer)}>Take groups with which it stands</button>
         `}

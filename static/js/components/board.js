@@ -214,7 +214,7 @@ function TimeStrip({ spent: { walked, thought }, longest }) {
 /** A robot that has turned less is said to walk straight [°]. */
 const MIN_TURN_DEG = 20;
 
-/** Whether it fell or turned. @param {Standing} one */
+/** Whether it fell or turned. @param {Standing} standing */
 function postureOf({ fell_at_step, heading_deg }) {
   const fell = typeof fell_at_step === "number" && `fell at step ${whole(fell_at_step + 1)}`;
   const turn = heading_deg ?? 0;
@@ -303,8 +303,8 @@ function ClockChoice() {
     <label class="choice" title=${`${whose}${sentence(clockTitle(clock.value))}. ${about}`}>
       <span class="sr-only">Clock</span>
       <select name="clock" onChange=${onChange}>
-        ${choicesOf(served().clocks, clockTitle).map(([one, words]) => html`
-          <option value=${one} selected=${one === clock.value}>${words}</option>
+        ${choicesOf(served().clocks, clockTitle).map(([choice, words]) => html`
+          <option value=${choice} selected=${choice === clock.value}>${words}</option>
         `)}
       </select>
     </label>
@@ -317,12 +317,14 @@ function Follow() {
     [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
   const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
   const target = page.camera.value;
-  if (!choices.some(([one]) => one === target)) choices.push([target, `Follow lane ${target}`]);
+  if (!choices.some(([choice]) => choice === target)) choices.push([target, `Follow lane ${target}`]);
   return html`
     <label class="choice" title="The robot that your camera follows; keys 1 to 8, 0 for a free camera">
       <span class="sr-only">Follow</span>
       <select name="follow" onChange=${(/** @type {Changed} */ event) => (page.camera.value = event.target.value)}>
-        ${choices.map(([one, words]) => html`<option value=${one} selected=${one === target}>${words}</option>`)}
+        ${choices.map(([choice, words]) => html`
+          <option value=${choice} selected=${choice === target}>${words}</option>
+        `)}
       </select>
     </label>
   `;
@@ -344,13 +346,13 @@ function ByEachClock({ rows }) {
       <caption>The same race by each clock</caption>
       <thead><tr><td></td>${shown.map(({ title }) => html`<th scope="col">${title}</th>`)}</tr></thead>
       <tbody>
-        ${CLOCKS.map((one) => html`
-          <tr class=${one === clock.value ? "chosen" : ""}>
-            <th scope="row">${sentence(clockTitle(one))}</th>
+        ${CLOCKS.map((name) => html`
+          <tr class=${name === clock.value ? "chosen" : ""}>
+            <th scope="row">${sentence(clockTitle(name))}</th>
             ${shown.map(({ clocks }) => html`
-              <td>${clocks[one].rank === 1
-                ? html`<b>${metres(clocks[one].finished_distance_m)}</b>`
-                : metres(clocks[one].finished_distance_m)}</td>
+              <td>${clocks[name].rank === 1
+                ? html`<b>${metres(clocks[name].finished_distance_m)}</b>`
+                : metres(clocks[name].finished_distance_m)}</td>
             `)}
           </tr>
         `)}

@@ -60,14 +60,14 @@ const numbersOf = ({ lines, marks, xs, x, y }) =>
 
 /**
  * The picture with a title and a legend: on the page they stand beside it.
- * @param {{ svg: SVGSVGElement, name: string, label: string, lines: Line[], marks: Mark[] }} one
+ * @param {{ svg: SVGSVGElement, name: string, label: string, lines: Line[], marks: Mark[] }} chart
  */
 function pictureOf({ svg, name, label, lines, marks }) {
   const copy = withStyles(svg);
   const samples = [
     ...lines.map((line) => ({ name: line.name, of: svg.querySelectorAll(".curve")[lines.indexOf(line)] })),
     ...marks.filter((mark) => mark.name).map((mark) => ({ name: mark.name, of: markOf(svg, mark) })),
-  ].filter(/** @returns {one is Sample} */ (one) => one.of !== null && one.name !== undefined);
+  ].filter(/** @returns {sample is Sample} */ (sample) => sample.of !== null && sample.name !== undefined);
   const [chartWidth, chartHeight] = [svg.width.baseVal.value, svg.height.baseVal.value];
   const rows = rowsOf(samples, chartWidth);
   const width = chartWidth + 2 * MARGIN_PX;
@@ -93,7 +93,7 @@ function pictureOf({ svg, name, label, lines, marks }) {
 
 /**
  * A line of the legend, drawn like the one in the chart.
- * @param {{ svg: SVGSVGElement, words: string, of: Element, left: number, y: number }} one
+ * @param {{ svg: SVGSVGElement, words: string, of: Element, left: number, y: number }} heading
  */
 function legendOf({ svg, words, of, left, y }) {
   const sample = element("line", { x1: left, x2: left + SAMPLE_PX, y1: y, y2: y });
@@ -132,9 +132,9 @@ const markOf = (svg, { kind }) => svg.querySelector(kind ? `.mark.${kind}` : ".m
 function withStyles(svg) {
   const copy = /** @type {SVGSVGElement} */ (svg.cloneNode(true));
   const originals = svg.querySelectorAll(DRAWN);
-  copy.querySelectorAll(DRAWN).forEach((one, n) => copyStyles(originals[n], one));
-  for (const one of [copy, ...copy.querySelectorAll("g")]) {
-    for (const name of ["role", "aria-label", "class", "style"]) one.removeAttribute(name);
+  copy.querySelectorAll(DRAWN).forEach((shape, n) => copyStyles(originals[n], shape));
+  for (const shape of [copy, ...copy.querySelectorAll("g")]) {
+    for (const name of ["role", "aria-label", "class", "style"]) shape.removeAttribute(name);
   }
   return copy;
 }
@@ -194,7 +194,7 @@ function asRgb(color) {
 /** @param {OffscreenCanvas} canvas */
 const penOf = (canvas) => /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
 
-/** @param {{ text: string, width: number, height: number }} one */
+/** @param {{ text: string, width: number, height: number }} props */
 async function asPng({ text, width, height }) {
   const image = new Image();
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;

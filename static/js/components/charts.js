@@ -108,7 +108,7 @@ const isFull = () => page.view.value !== "race" || isAtLeast("study");
  */
 function frameOf(width, { y, lines, part: [from, to], values: [least, most] }) {
   const yTicks = withOwnText(ticks(most, 4, least), y.text);
-  const left = Math.ceil(Math.max(0, ...yTicks.map((one) => widthOf(y.text(one), REGULAR)))) + TICK_GAP_PX + 2;
+  const left = Math.ceil(Math.max(0, ...yTicks.map((tick) => widthOf(y.text(tick), REGULAR)))) + TICK_GAP_PX + 2;
   const right = Math.max(left + 1, width - roomFor(lines));
   const bottom = HEIGHT - BOTTOM_PX;
   return {
@@ -125,7 +125,7 @@ function frameOf(width, { y, lines, part: [from, to], values: [least, most] }) {
  * @param {(value: number) => string} text
  */
 const withOwnText = (numbers, text) =>
-  numbers.filter((one, n) => numbers.findIndex((other) => text(other) === text(one)) === n);
+  numbers.filter((number, n) => numbers.findIndex((other) => text(other) === text(number)) === n);
 
 let pictures = 0;
 
@@ -162,16 +162,16 @@ function Picture({ label, x, y, lines, marks, frame, scale }) {
 /** @param {{ x: XAxis, y: YAxis, frame: TickedFrame }} props */
 function Axes({ x, y, frame }) {
   const { left, right, bottom, height, xTicks, yTicks } = frame;
-  const boxes = xTicks.map((one) => {
-    const width = widthOf(tickText(one), REGULAR);
-    const middle = frame.x(one) - width / 2;
+  const boxes = xTicks.map((tick) => {
+    const width = widthOf(tickText(tick), REGULAR);
+    const middle = frame.x(tick) - width / 2;
     return { left: Math.min(middle, right - width), top: bottom + 4, width: width + TICK_GAP_PX, height: TICK_PX };
   });
   const placed = placeCaptions(boxes, { left: 0, top: 0, width: frame.width + TICK_GAP_PX, height });
   return html`
-    ${yTicks.map((one) => html`
-      <line class="rule" x1=${left} x2=${right} y1=${frame.y(one)} y2=${frame.y(one)} />
-      <text x=${left - TICK_GAP_PX} y=${frame.y(one) + 4} text-anchor="end">${y.text(one)}</text>
+    ${yTicks.map((tick) => html`
+      <line class="rule" x1=${left} x2=${right} y1=${frame.y(tick)} y2=${frame.y(tick)} />
+      <text x=${left - TICK_GAP_PX} y=${frame.y(tick) + 4} text-anchor="end">${y.text(tick)}</text>
     `)}
     ${placed.map((box, n) => box && html`<text x=${box.left} y=${bottom + 16}>${tickText(xTicks[n])}</text>`)}
     <text x=${right} y=${height - 4} text-anchor="end">${x.unit}</text>
@@ -293,7 +293,7 @@ export function AsTable({ caption, columns, rows }) {
             <thead><tr>${columns().map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
             <tbody>
               ${rows().map(([first, ...others]) => html`
-                <tr><th scope="row">${first}</th>${others.map((one) => html`<td>${one}</td>`)}</tr>
+                <tr><th scope="row">${first}</th>${others.map((cell) => html`<td>${cell}</td>`)}</tr>
               `)}
             </tbody>
           </table>

@@ -39,12 +39,12 @@ export function readIndex({ axis, xs, part: [low, high] }) {
 
 /**
  * Zoom by a factor around the crosshair, or around the middle; 0 shows all.
- * @param {Axis} one
+ * @param {Axis} chart
  * @param {number} factor
  */
-export function zoomBy(one, factor) {
-  const { axis, whole, part, xs } = one;
-  const index = readIndex(one);
+export function zoomBy(chart, factor) {
+  const { axis, whole, part, xs } = chart;
+  const index = readIndex(chart);
   const middle = index === null ? (part[0] + part[1]) / 2 : xs[index];
   zoomTo(axis, factor ? scaledAround(part, middle, factor) : null, whole);
 }
@@ -65,7 +65,7 @@ export function Crosshair(props) {
   if (last < 0) return null;
   const shown = index ?? Math.max(0, Math.min(now, last));
   const { at, values, missing } = readingOf(props, xs[shown]);
-  const words = `${at}: ${missing || values.map((one) => `${one.name} ${one.value}`).join(", ")}`;
+  const words = `${at}: ${missing || values.map((value) => `${value.name} ${value.value}`).join(", ")}`;
   const style = Object.fromEntries(Object.entries(inset).map(([side, px]) => [side, `${px}px`]));
   const share = shareOf(xs[shown], low, high);
   /** @param {{ currentTarget: HTMLElement }} event */
@@ -103,7 +103,7 @@ function missingAt(reach, position) {
 
 /**
  * Readings at a position: of each line, and of each named level; or why there are none.
- * @param {CrosshairProps} one
+ * @param {CrosshairProps} props
  * @param {number} position
  */
 function readingOf({ lines, marks, x, y, reach }, position) {
@@ -168,11 +168,11 @@ function usePointer(props, setSelection) {
   /** @param {OnChart} event */
   const read = (event) => {
     const { x } = placeOf(event, part);
-    const inView = xs.filter((one) => one >= part[0] && one <= part[1]);
+    const inView = xs.filter((position) => position >= part[0] && position <= part[1]);
     const isOfMouse = event.pointerType === "mouse";
     if (inView.length) crosshair.value = { axis, x: inView[nearestIndex(inView, x)], isOfMouse };
   };
-  /** @param {PointerEvent} one */
+  /** @param {PointerEvent} event */
   const handlersOf = ({ pointerType }) => (pointerType === "touch" ? finger : mouse);
   return {
     /** @param {OnChart} event */
@@ -194,7 +194,7 @@ function usePointer(props, setSelection) {
   };
 }
 
-/** @param {Axis} one @param {(selection: Range | null) => void} setSelection */
+/** @param {Axis} axis @param {(selection: Range | null) => void} setSelection */
 function useMouse({ axis, whole, part, seek }, setSelection) {
   const press = useRef(/** @type {{ x: number, share: number, isDrag: boolean } | null} */ (null));
   const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
@@ -241,7 +241,7 @@ function useMouse({ axis, whole, part, seek }, setSelection) {
   };
 }
 
-/** @param {Axis} one */
+/** @param {Axis} axis */
 function useFingers({ axis, whole, part, seek, reach }) {
   const fingers = useRef(/** @type {Map<number, { x: number, share: number }>} */ (new Map()));
   const hasZoomed = useRef(false);
@@ -266,10 +266,10 @@ function useFingers({ axis, whole, part, seek, reach }) {
     move(event) {
       const moved = fingers.current.get(event.pointerId);
       if (moved) moved.share = placeOf(event, part).share;
-      const [one, other] = [...fingers.current.values()];
+      const [first, other] = [...fingers.current.values()];
       if (!other) return false;
       hasZoomed.current = true;
-      zoomTo(axis, pinned([one.x, other.x], [one.share, other.share]), whole);
+      zoomTo(axis, pinned([first.x, other.x], [first.share, other.share]), whole);
       return true;
     },
   };

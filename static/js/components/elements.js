@@ -184,8 +184,8 @@ export const ProgressBar = ({ label, share, shown = null }) => html`
  */
 export const Segments = ({ label, choices, value, onValue }) => html`
   <div class="segments" role="group" aria-label=${label}>
-    ${choices.map(([one, title]) => html`
-      <button key=${one} aria-pressed=${one === value ? "true" : "false"} onClick=${() => onValue(one)}>
+    ${choices.map(([choice, title]) => html`
+      <button key=${choice} aria-pressed=${choice === value ? "true" : "false"} onClick=${() => onValue(choice)}>
         ${title}
       </button>
     `)}

@@ -205,14 +205,14 @@ export function SelectField({
 }) {
   const kept = wrong.value[field];
   /** @param {{ target: HTMLSelectElement }} event */
-  const onChange = ({ target }) => onValue(choices.find(([one]) => textOf(one) === target.value)?.[0] ?? null);
+  const onChange = ({ target }) => onValue(choices.find(([choice]) => textOf(choice) === target.value)?.[0] ?? null);
   return closable(field, html`
     <div class="field">
       <label for=${`field-${field}`}>${label}</label>
       <select ...${attributesOf(field)} onChange=${onChange}>
         ${kept && html`<${InvalidOption} text=${kept.text} />`}
-        ${choices.filter(([one]) => isAllowed(field, one)).map(([one, title]) => html`
-          <option value=${textOf(one)} selected=${!kept && textOf(one) === textOf(value)}>${title}</option>
+        ${choices.filter(([choice]) => isAllowed(field, choice)).map(([choice, title]) => html`
+          <option value=${textOf(choice)} selected=${!kept && textOf(choice) === textOf(value)}>${title}</option>
         `)}
       </select>
       <${MistakeOf} field=${field} />
@@ -288,8 +288,8 @@ function Choice({ name, setting, value, onValue }) {
       ${first !== null && !kept && !choices.includes(String(value)) && html`
         <option value="" selected disabled>choose</option>
       `}
-      ${choices.map((one) => html`
-        <option value=${one} selected=${!kept && one === value}>${choiceTitle(setting, one)}</option>
+      ${choices.map((choice) => html`
+        <option value=${choice} selected=${!kept && choice === value}>${choiceTitle(setting, choice)}</option>
       `)}
     </select>
     <${MistakeOf} field=${name} />

@@ -33,7 +33,7 @@ export function LearningChart() {
 
 /**
  * Lines: greedy's and the best known distance, where one training continued another, what changed, what happened.
- * @param {NonNullable<typeof curve.value>} one
+ * @param {NonNullable<typeof curve.value>} curve
  */
 const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run, from }) => [
   ...momentOf(run, from),
@@ -43,10 +43,11 @@ const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run, f
   ...changes.map((change) => ({
     x: change.step, color: "--dim", dash: [2, 3], text: rateInWords(run.config.agent, change),
   })),
-  ...disturbances.flatMap((one) => {
+  ...disturbances.flatMap((disturbance) => {
     const mark = { color: "--warn", dash: [4, 3] };
-    const begins = one.at_step > 0 ? [{ ...mark, x: one.at_step, text: inWords(one) }] : [];
-    return one.until_step ? [...begins, { ...mark, x: one.until_step, text: `no ${inWords(one)}` }] : begins;
+    const begins = disturbance.at_step > 0 ? [{ ...mark, x: disturbance.at_step, text: inWords(disturbance) }] : [];
+    if (!disturbance.until_step) return begins;
+    return [...begins, { ...mark, x: disturbance.until_step, text: `no ${inWords(disturbance)}` }];
   }),
 ];
 
@@ -68,7 +69,7 @@ const greedyMark = (y) => ({
   text: `greedy, the line to beat: ${metres(y)}`,
 });
 
-/** @param {NonNullable<typeof curve.value>} one */
+/** @param {NonNullable<typeof curve.value>} curve */
 function captionOf({ points, greedy_m, best_known_m }) {
   if (points.length < 2) return "Learning curve, without points so far.";
   const last = points[points.length - 1];
@@ -94,7 +95,8 @@ function Curve({ known }) {
     text: (/** @type {number} */ step) => count(step, "step"),
   };
   const y = {
-    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest([...levels, ...distances], MIN_TOP_M),
+    min: -largest(distances.map((distance) => -distance), 0),
+    max: HEADROOM * largest([...levels, ...distances], MIN_TOP_M),
     unit: "m", text: metres,
   };
   return html`
@@ -109,7 +111,7 @@ function Curve({ known }) {
   `;
 }
 
-/** Shows a step of the practice that is on stage; null if it cannot be. @param {{ run: Run, from: number }} one */
+/** Shows a step of the practice that is on stage; null if it cannot be. @param {{ run: Run, from: number }} practice */
 function seekToStep({ run, from }) {
   const seek = seekIn(run.id);
   const { duration_s } = scene.value ?? {};

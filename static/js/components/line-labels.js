@@ -111,7 +111,7 @@ const Label = ({ text, box: { left, top, height }, color }) => html`
 
 /**
  * Where the label of a line's end is wanted.
- * @param {End} one
+ * @param {End} end
  * @returns {Box}
  */
 const endBox = ({ end, x, y }) =>
@@ -135,7 +135,7 @@ function coverOf(marks, curves, ends, frame) {
     xs.flatMap((x, n) => (typeof ys[n] === "number" ? [[frame.x(x), frame.y(ys[n])]] : [])));
   const [dots, labels] = [ends.map(dotBox), ends.map(endBox)];
   return (/** @type {Box} */ box) => {
-    const covered = (/** @type {Box[]} */ boxes) => boxes.filter((one) => overlap(one, box)).length;
+    const covered = (/** @type {Box[]} */ boxes) => boxes.filter((other) => overlap(other, box)).length;
     return [...straight, ...paths].filter((points) => passes(points, box)).length + covered(dots) + covered(labels) / 2;
   };
 }
@@ -145,7 +145,7 @@ const SHARES = [0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8];
 
 /**
  * Where the dot of a line's end is.
- * @param {{ x: number, y: number }} one
+ * @param {{ x: number, y: number }} point
  * @returns {Box}
  */
 const dotBox = ({ x, y }) =>
@@ -196,8 +196,8 @@ const shifted = (box, { left, width }) => ({ ...box, left: within(box.left, left
 export function placeCaptions(wanted, bounds) {
   /** @type {Box[]} */
   const placed = [];
-  return wanted.map((one) => {
-    const box = shifted(one, bounds);
+  return wanted.map((candidate) => {
+    const box = shifted(candidate, bounds);
     if (placed.some((other) => overlap(box, other))) return null;
     placed.push(box);
     return box;
@@ -215,7 +215,7 @@ export function chooseCaptions(places, bounds, covering) {
   /** @type {Box[]} */
   const placed = [];
   return places.map((own) => {
-    const free = own.map((one) => shifted(one, bounds))
+    const free = own.map((candidate) => shifted(candidate, bounds))
       .filter((box) => box.top >= bounds.top && box.top + box.height <= bounds.top + bounds.height)
       .filter((box) => !placed.some((other) => overlap(box, other)));
     const counts = free.map(covering);
@@ -249,7 +249,7 @@ export function passes(points, { left, top, width, height }) {
  * @param {Box} bounds
  */
 export function placeLabels(wanted, obstacles, bounds) {
-  const inOrder = wanted.map((one, number) => ({ number, box: shifted(one, bounds) }));
+  const inOrder = wanted.map((candidate, number) => ({ number, box: shifted(candidate, bounds) }));
   inOrder.sort((a, b) => a.box.top - b.box.top);
   const boxes = inOrder.map(({ box }) => box);
   const downwards = nearest(boxes, obstacles, bounds, false);
@@ -281,15 +281,15 @@ function nearest(boxes, obstacles, bounds, isAbove) {
   /** @type {Box[]} */
   const placed = [];
   return boxes.map((box) => {
-    const before = placed.filter((one) => inOneColumn(one, box));
+    const before = placed.filter((other) => inOneColumn(other, box));
     const bottom = bounds.top + bounds.height - box.height;
-    const low = isAbove ? bounds.top : Math.max(bounds.top, ...before.map((one) => one.top + one.height));
-    const high = isAbove ? Math.min(bottom, ...before.map((one) => one.top - box.height)) : bottom;
+    const low = isAbove ? bounds.top : Math.max(bounds.top, ...before.map((other) => other.top + other.height));
+    const high = isAbove ? Math.min(bottom, ...before.map((other) => other.top - box.height)) : bottom;
     const taken = [...obstacles, ...placed];
-    const top = [box.top, ...taken.flatMap((one) => [one.top - box.height, one.top + one.height])]
-      .map((one) => within(one, low, high))
+    const top = [box.top, ...taken.flatMap((other) => [other.top - box.height, other.top + other.height])]
+      .map((place) => within(place, low, high))
       .sort((a, b) => Math.abs(a - box.top) - Math.abs(b - box.top))
-      .find((one) => !taken.some((other) => overlap({ ...box, top: one }, other)));
+      .find((place) => !taken.some((other) => overlap({ ...box, top: place }, other)));
     if (top === undefined || low > high) return null;
     placed.push({ ...box, top });
     return { ...box, top };

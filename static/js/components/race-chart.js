@@ -95,7 +95,7 @@ function momentsOf(until, last) {
 
 /**
  * Where the time axis ends.
- * @param {Timeline} one
+ * @param {Timeline} timeline
  * @param {number} until
  * @param {number} longest
  */
@@ -106,7 +106,7 @@ function lastMoment({ first_finish_s }, until, longest) {
 
 /**
  * The finish line, the best known walk, and time-out once it is past.
- * @param {Timeline} one
+ * @param {Timeline} timeline
  * @param {number} until
  * @param {number | null} best_m
  */

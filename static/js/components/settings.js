@@ -133,12 +133,12 @@ function LearnerSettings() {
   const run = trainingInFields();
   const live = run ? agentOf(run.config.agent).live_settings : {};
   const main = mainSettings(form.value.agent);
-  const acting = main.map((one) => one.live);
+  const acting = main.map((setting) => setting.live);
   const others = Object.keys(live).filter((name) => !acting.includes(name));
   return [
-    ...main.map((one) => (one.live && one.live !== one.name && one.live in live
-      ? closable(one.name, html`<${Present} key=${one.live} name=${one.live} setting=${live[one.live]} run=${run} />`)
-      : html`<${Chosen} key=${one.name} one=${one} run=${one.name in live ? run : null} />`)),
+    ...main.map(({ name, live: rate, ...setting }) => (rate && rate !== name && rate in live
+      ? closable(name, html`<${Present} key=${rate} name=${rate} setting=${live[rate]} run=${run} />`)
+      : html`<${Chosen} key=${name} one=${{ ...setting, name, live: rate }} run=${name in live ? run : null} />`)),
     ...others.map((name) =>
       closable(name, html`<${Present} key=${name} name=${name} setting=${live[name]} run=${run} />`)),
     run && isOperator.value && html`<${NextRates} key="next-rates" run=${run} />`,
@@ -192,8 +192,8 @@ function Present({ name, setting, run }) {
     ? Number((Math.round(scheduled / step) * step).toPrecision(SHOWN_DIGITS))
     : scheduled;
   const value = presentRates(run)[name] ?? rounded;
-  /** @param {SettingValue} one */
-  const onValue = (one) => tune({ [name]: one });
+  /** @param {SettingValue} changed */
+  const onValue = (changed) => tune({ [name]: changed });
   return html`<${Row} name=${name} setting=${setting} value=${value} onValue=${onValue} isOfForm=${false} />`;
 }
 
@@ -341,7 +341,7 @@ function Figure({ field, step }) {
 function Pace() {
   const run = trainingInFields();
   const pace = run ? rateNow(run, "pace") : form.value.pace;
-  const choices = PACES.some(([one]) => one === pace) ? PACES : [...PACES, [pace, `×${pace}`]];
+  const choices = PACES.some(([choice]) => choice === pace) ? PACES : [...PACES, [pace, `×${pace}`]];
   /** @param {number} value */
   const onValue = (value) => {
     setField("pace", value);
@@ -359,9 +359,9 @@ function Lanes() {
   /** @param {string} name */
   const toggle = (name) => {
     const chosen = lanes.includes(name)
-      ? lanes.filter((one) => one !== name)
-      : names.filter((one) => one === name || lanes.includes(one));
-    enter("lanes", chosen.filter((one) => names.includes(one)).join(","));
+      ? lanes.filter((lane) => lane !== name)
+      : names.filter((other) => other === name || lanes.includes(other));
+    enter("lanes", chosen.filter((lane) => names.includes(lane)).join(","));
   };
   return html`
     <fieldset class="field wide" disabled=${isClosed("lanes")}>

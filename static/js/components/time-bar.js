@@ -148,19 +148,19 @@ function labelsAbove(known, width) {
   const named = marks.value.filter(({ isMinor }) => !isMinor).toSorted((a, b) => weightOf(a) - weightOf(b));
   /** @type {{ kind: string, at: number, text: string, left: number, right: number }[]} */
   const placed = [];
-  for (const one of [...first, ...named]) {
-    const size = textWidth(one.text);
-    const left = Math.min(Math.max(0, shareOf(one.at, 0, end) * width - size / 2), width - size);
+  for (const mark of [...first, ...named]) {
+    const size = textWidth(mark.text);
+    const left = Math.min(Math.max(0, shareOf(mark.at, 0, end) * width - size / 2), width - size);
     const right = left + size;
     if (left < 0 || placed.some((other) => left < other.right + LABEL_GAP_PX && right > other.left - LABEL_GAP_PX)) {
       continue;
     }
-    placed.push({ ...one, left, right });
+    placed.push({ ...mark, left, right });
   }
   return placed;
 }
 
-/** @param {Mark} one */
+/** @param {Mark} mark */
 const weightOf = ({ kind }) => ["time-out", "fall", "disturbance", "change", "crossing"].indexOf(kind);
 
 /**
@@ -169,11 +169,11 @@ const weightOf = ({ kind }) => ["time-out", "fall", "disturbance", "change", "cr
  */
 const Marks = ({ place }) => html`
   <span class="marks">
-    ${marks.value.map((one) => (one.isMinor || !isAtLeast("try") || isPhone.value
-      ? html`<i class=${one.kind} style=${{ left: place(one.at) }} aria-hidden="true"></i>`
+    ${marks.value.map((mark) => (mark.isMinor || !isAtLeast("try") || isPhone.value
+      ? html`<i class=${mark.kind} style=${{ left: place(mark.at) }} aria-hidden="true"></i>`
       : html`
-        <button class=${one.kind} style=${{ left: place(one.at) }} title=${markInWords(one)}
-          aria-label=${`Go to: ${one.text}`} onClick=${() => seekTo(one.at, { isHeld: true })}></button>
+        <button class=${mark.kind} style=${{ left: place(mark.at) }} title=${markInWords(mark)}
+          aria-label=${`Go to: ${mark.text}`} onClick=${() => seekTo(mark.at, { isHeld: true })}></button>
       `))}
   </span>
 `;
@@ -209,8 +209,8 @@ function Below({ known, width, place }) {
   const isFree = (/** @type {number} */ x) => Math.abs(x - at) > half + SMALL_PX;
   return html`
     <div class="below-rail" aria-hidden="true">
-      ${inner.map((one) => isFree(shareOf(one, 0, end) * width) && html`
-        <span style=${{ left: place(one) }}>${one}</span>
+      ${inner.map((tick) => isFree(shareOf(tick, 0, end) * width) && html`
+        <span style=${{ left: place(tick) }}>${tick}</span>
       `)}
       ${at + half < width - textWidth(last, 400) && html`<span class="last">${last}</span>`}
       <b style=${{ left: `${at}px` }}>${bubble}</b>
@@ -251,8 +251,8 @@ function Speed() {
   return html`
     <select name="speed" aria-label="Speed" title=${isOwn ? "Speed on this page" : "Speed for every page"}
       disabled=${!isOwn && (!isOperator.value || isAway.value)} onChange=${onChange}>
-      ${choices.map(([one, words]) => html`
-        <option value=${String(one)} selected=${String(one) === String(speed)}>${words}</option>
+      ${choices.map(([choice, words]) => html`
+        <option value=${String(choice)} selected=${String(choice) === String(speed)}>${words}</option>
       `)}
     </select>
   `;

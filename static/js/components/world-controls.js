@@ -93,7 +93,8 @@ function OwnField({ name, setting, ...rest }) {
  */
 export function firstFields(kind, robot, leg) {
   const fields = kindFor(kind, robot, leg)?.fields ?? {};
-  const example = served().worlds.flatMap(({ disturbances }) => disturbances).find((one) => one.kind === kind);
+  const all = served().worlds.flatMap(({ disturbances }) => disturbances);
+  const example = all.find((disturbance) => disturbance.kind === kind);
   const isFor = (/** @type {[string, FieldOption]} */ [name, { choices }]) =>
     !choices.length || choices.includes(/** @type {any} */ (example)?.[name]);
   if (example && Object.entries(fields).every(isFor)) return example;
@@ -130,7 +131,7 @@ const PRESS_WORDS = { push: "Push it", patch: "Lay it" };
 
 /**
  * Whether it waits for its button: a push, and what has no size at which nothing happens.
- * @param {DisturbanceKind} one
+ * @param {DisturbanceKind} kind
  */
 const isPressed = ({ lasts, nothing }) => !lasts || nothing === null;
 
@@ -151,8 +152,8 @@ function useValues(kind, others, conditions, onDisturb) {
   /** @param {Record<string, number | null | undefined>} chosen */
   const send = async (chosen) => {
     clearTimeout(timer.current);
-    const given = [kind.size, ...others.map(([other]) => other)].filter((one) => chosen[one] !== undefined);
-    const wanted = { kind: kind.name, ...Object.fromEntries(given.map((one) => [one, chosen[one] ?? null])) };
+    const given = [kind.size, ...others.map(([other]) => other)].filter((field) => chosen[field] !== undefined);
+    const wanted = { kind: kind.name, ...Object.fromEntries(given.map((field) => [field, chosen[field] ?? null])) };
     await onDisturb(/** @type {Disturbance} */ (wanted));
     if (!isPressed(kind)) setDraft({});
   };
@@ -343,7 +344,7 @@ export function LiveWorld() {
   return html`
     <section class="world-now" aria-label="Disturbances now">
       <${WorldControls} id="live" config=${run.config} conditions=${conditionsNow(run)} sentenceOf=${words}
-        onDisturb=${(/** @type {Disturbance} */ one) => disturb(run, one)} />
+        onDisturb=${(/** @type {Disturbance} */ disturbance) => disturb(run, disturbance)} />
       <${Problem} at="disturb" />
     </section>
   `;
@@ -361,7 +362,8 @@ function BranchOf({ race }) {
   // At the end nothing is left to walk: the middle is offered.
   const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
   const before = conditionsAt(disturbancesOf(race), from - 1, config.robot);
-  const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0, config.robot);
+  const atOnce = [...before, ...chosen].map((disturbance) => ({ ...disturbance, at_step: 0 }));
+  const conditions = conditionsAt(atOnce, 0, config.robot);
   /** @param {string[]} now */
   const words = (now) => {
     const pushes = chosen.some(({ kind }) => kindNamed(kind)?.lasts === false) ? ["a push"] : [];
@@ -371,7 +373,8 @@ function BranchOf({ race }) {
   return html`
     <section class="branch" aria-label="Disturb this race">
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
-        onDisturb=${(/** @type {Disturbance} */ one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
+        onDisturb=${(/** @type {Disturbance} */ disturbance) =>
+          setChosen((all) => chosenWith(all, disturbance, before, config.robot))}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
           Race on from ${stepShown.value === null ? `step ${from}` : "here"}
         </button>

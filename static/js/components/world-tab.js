@@ -53,10 +53,10 @@ function Happened() {
     <details class="more happened-list" open>
       <summary>What happened<span class="dim"> · ${all.length}</span></summary>
       <ul>
-        ${all.map((one) => html`
+        ${all.map((world) => html`
           <li>
-            <b class="num">${positionInWords(known, one.at)}</b> <span>${markInWords(one)}</span>
-            <button class="link" onClick=${() => seekTo(one.at, { isHeld: true })}>Go there</button>
+            <b class="num">${positionInWords(known, world.at)}</b> <span>${markInWords(world)}</span>
+            <button class="link" onClick=${() => seekTo(world.at, { isHeld: true })}>Go there</button>
           </li>
         `)}
       </ul>

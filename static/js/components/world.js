@@ -23,7 +23,7 @@ const ROUGH = "M-36 15l5-4 5 5 6-7 6 6 5-4 5 5 6-6 6 5 5-5 6 6 5-4 6 4";
  */
 export function WorldPicture({ disturbances }) {
   /** @param {string} kind */
-  const of = (kind) => disturbances.find((one) => one.kind === kind);
+  const of = (kind) => disturbances.find((disturbance) => disturbance.kind === kind);
   const states = legStates(disturbances);
   const weak = of("weak");
   const [noise, payload, patch, friction] = ["sensor-noise", "payload", "patch", "friction"].map(of);
@@ -91,7 +91,8 @@ export function Disturbances() {
   const add = ({ target }) => {
     const [what, name] = target.value.split(" ");
     const added = what === "world"
-      ? (worlds.find((one) => one.name === name)?.disturbances ?? []).map((one) => textOf({ ...one, at_step }))
+      ? (worlds.find((world) => world.name === name)?.disturbances ?? [])
+        .map((disturbance) => textOf({ ...disturbance, at_step }))
       : [textOf({ kind: name, ...firstFields(name, form.value.robot), at_step })];
     target.value = "";
     setDisturbances([...texts, ...added]);
@@ -128,11 +129,11 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
   const mistake = mistakeInText(text, form.value.simulator, form.value.robot);
   const { robot, gait } = form.value;
   /** @param {string} field */
-  const given = (field) => fields.find(([one]) => one === field || one === shortName(name, field))?.[1] ?? "";
+  const given = (field) => fields.find(([key]) => key === field || key === shortName(name, field))?.[1] ?? "";
   const legs = given("legs").split(",").map(Number).filter(Boolean);
   /** @param {number} leg */
   const toggle = (leg) => {
-    const chosen = legs.includes(leg) ? legs.filter((one) => one !== leg) : [...legs, leg].sort((a, b) => a - b);
+    const chosen = legs.includes(leg) ? legs.filter((other) => other !== leg) : [...legs, leg].sort((a, b) => a - b);
     onText(withField(text, "legs", chosen.join(",")));
   };
   const words = adjectiveOf(name);
@@ -181,7 +182,9 @@ function DisturbanceField({ id, field, setting, value, onValue }) {
     return html`
       <label class="disturbance-field" for=${id}>${title}
         <select id=${id} title=${setting.help} onChange=${(/** @type {Changed} */ { target }) => onValue(target.value)}>
-          ${setting.choices.map((one) => html`<option value=${one} selected=${one === value}>${one}</option>`)}
+          ${setting.choices.map((choice) => html`
+            <option value=${choice} selected=${choice === value}>${choice}</option>
+          `)}
         </select>
       </label>
     `;

@@ -188,7 +188,7 @@ function knownPractice({ run, scene, agents, tests, state }) {
   const made = state === "practising" ? scene?.lanes[0]?.steps_made ?? 0 : Infinity;
   const name = training.config.agent;
   return {
-    training, title: agents.find((one) => one.name === name)?.title ?? name,
+    training, title: agents.find((agent) => agent.name === name)?.title ?? name,
     newest: tests.findLast(({ step }) => step > 0 && step <= made) ?? null,
   };
 }

@@ -259,17 +259,17 @@ function marchOf(b) {
  */
 function slowedBy(a, b, happened) {
   if (!areWhole(a, b)) return null;
-  for (const one of happened.toReversed()) {
+  for (const event of happened.toReversed()) {
     const change = (/** @type {Walked} */ { ends_m, made }) => {
-      const to = Math.min(made, one.until_step ?? Infinity);
-      if (one.at_step < FEWEST_STEPS || to - one.at_step < FEWEST_STEPS) return null;
-      return { before: meanBetween(ends_m, 0, one.at_step), after: meanBetween(ends_m, one.at_step, to) };
+      const to = Math.min(made, event.until_step ?? Infinity);
+      if (event.at_step < FEWEST_STEPS || to - event.at_step < FEWEST_STEPS) return null;
+      return { before: meanBetween(ends_m, 0, event.at_step), after: meanBetween(ends_m, event.at_step, to) };
     };
     const [leader, other] = [change(a), change(b)];
     const isSlower = leader && other && other.before > 0 && other.after < (1 - SHORTER) * other.before;
     if (isSlower && other.before - other.after > leader.before - leader.after) {
       const { before, after } = other;
-      return `${one.words}: ${b.title} went ${ofStep(before)} a step before, ${ofStep(after)} after.`;
+      return `${event.words}: ${b.title} went ${ofStep(before)} a step before, ${ofStep(after)} after.`;
     }
   }
   return null;

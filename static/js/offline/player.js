@@ -134,7 +134,7 @@ class Player extends EventTarget {
     const centring = this.#follower.centring(this.#scene, loaded.frames[index], VIEW, lag_s);
     emit("hexapods:draw", { messages: [...messages, centring] });
     this.#shown = { number, index };
-    const scene = /** @type {any} */ (loaded.frames.slice(0, index + 1).findLast((one) => one.scene)?.scene);
+    const scene = /** @type {any} */ (loaded.frames.slice(0, index + 1).findLast((earlier) => earlier.scene)?.scene);
     if (scene) emit("hexapods:scene", scene);
     return true;
   }

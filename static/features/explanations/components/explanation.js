@@ -45,7 +45,7 @@ function Happened({ told }) {
 
 /**
  * Number of trials of a move there; null where they are not counted.
- * @param {Explanation} one
+ * @param {Explanation} explanation
  * @param {Move} other
  */
 const triesOf = ({ visits }, [pair, cell]) => visits?.[pair]?.[cell] ?? null;
@@ -70,7 +70,7 @@ function Choice({ told }) {
   return html`
     <section>
       <h3>Why this move</h3>
-      ${choice.sentences.map((one) => html`<p>${one}</p>`)}
+      ${choice.sentences.map((sentence) => html`<p>${sentence}</p>`)}
       <${Scores} told=${told} />
     </section>
   `;
@@ -89,7 +89,7 @@ function Search({ told }) {
   return html`
     <section>
       <h3>Why this move</h3>
-      ${sentences.map((one) => html`<p>${one}</p>`)}
+      ${sentences.map((sentence) => html`<p>${sentence}</p>`)}
       <${Ranking} told=${told} caption=${compares} rows=${rows} />
     </section>
   `;
@@ -109,7 +109,7 @@ function Scores({ told }) {
 /** @param {{ told: Explanation, caption: string, rows: RankedMove[] }} props */
 function Ranking({ told, caption, rows }) {
   const all = rows.toSorted((a, b) => b.score - a.score);
-  /** @param {{ move: Move }} one */
+  /** @param {{ move: Move }} move */
   const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
   const first = all.slice(0, isAtLeast("study") ? MAX_MOVES.study : MAX_MOVES.other);
   const shown = first.some(isMade) ? first : [...first.slice(0, -1), ...all.filter(isMade)];
@@ -118,14 +118,14 @@ function Ranking({ told, caption, rows }) {
     <table class="scores">
       <caption class="dim">${sentenceOf(caption)}</caption>
       <tbody>
-        ${shown.map((one) => html`
-          <tr class=${isMade(one) ? "made" : ""}>
+        ${shown.map((action) => html`
+          <tr class=${isMade(action) ? "made" : ""}>
             <th scope="row">
-              ${moveInWords(one.move, told)}${isMade(one) && html`<span class="sr-only">, made</span>`}
-              ${one.note && html`<span class="dim note">${one.note}</span>`}
+              ${moveInWords(action.move, told)}${isMade(action) && html`<span class="sr-only">, made</span>`}
+              ${action.note && html`<span class="dim note">${action.note}</span>`}
             </th>
-            <td class="score-bar" aria-hidden="true"><i style=${barOf(one.score, low, high)}></i></td>
-            <td>${fineMillimetres(one.score)}</td>
+            <td class="score-bar" aria-hidden="true"><i style=${barOf(action.score, low, high)}></i></td>
+            <td>${fineMillimetres(action.score)}</td>
           </tr>
         `)}
       </tbody>
@@ -214,10 +214,10 @@ const Others = ({ others, grid }) => html`
   <details class="fold">
     <summary>${count(others.count, "further update")} of ${count(others.values_changed, "value")}</summary>
     <ul class="others">
-      ${others.largest.map((one) => html`
+      ${others.largest.map((update) => html`
         <li>
-          <span>${one.move}</span> <span class="dim">where ${stateInWords(one.observation, grid)}</span>
-          <p class="formula">${unbroken(one.numbers)} = <b>${comparedNumber(one.after, one.before)}</b></p>
+          <span>${update.move}</span> <span class="dim">where ${stateInWords(update.observation, grid)}</span>
+          <p class="formula">${unbroken(update.numbers)} = <b>${comparedNumber(update.after, update.before)}</b></p>
         </li>
       `)}
     </ul>

@@ -55,8 +55,8 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
   const at = read ?? held ?? { row: marked ?? 0, column: column ?? 0 };
   const place = { row: clamped(at.row, last.row), column: clamped(at.column, last.column) };
   const words = cellInWords(shown, place.row, place.column);
-  /** @param {Place} one */
-  const choose = (one) => onChoose(stateCells(shown.first + one.row, shown), moveOf(one.column, shown));
+  /** @param {Place} cell */
+  const choose = (cell) => onChoose(stateCells(shown.first + cell.row, shown), moveOf(cell.column, shown));
   /** @param {Event & { currentTarget: HTMLElement }} event */
   const giveUp = (event) => {
     /** @type {HTMLElement | null | undefined} */
@@ -209,7 +209,7 @@ function pointerHandlers(last, onPlace, onChoose, isHeld) {
   return { onPointerMove: read, onPointerDown: read, onPointerLeave: leave, onClick: choose };
 }
 
-/** @param {Place} one */
+/** @param {Place} place */
 const idOf = ({ row, column }) => `heat-${row}-${column}`;
 
 /** @param {HTMLElement | null} scroller @param {number} row */

@@ -56,7 +56,7 @@ function Told({ told }) {
   const when = told.is_ranked ? ` at time-out (${clockTitle(told.clock)})` : "";
   return html`
     <p class="dim">${sentence(`${distanceApart(told.behind_m)} behind ${ahead}${when}`)}.</p>
-    ${told.sentences.map((one) => html`<p>${one}</p>`)}
+    ${told.sentences.map((text) => html`<p>${text}</p>`)}
     <p class="dim fine">One step ahead only: the best next step is not always the best walk.</p>
   `;
 }

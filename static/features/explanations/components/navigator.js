@@ -21,7 +21,7 @@ export const useMoment = () => useEffect(() => {
   users += 1;
   if (stop === null) {
     const stops = [followMoment(), followChosenState()];
-    stop = () => stops.forEach((one) => one());
+    stop = () => stops.forEach((end) => end());
   }
   return () => {
     users -= 1;

@@ -22,8 +22,8 @@ const trainings = computed(() =>
 /** The two trainings whose policies are compared; fewer if there are no two. */
 const two = computed(() => {
   const all = trainings.value;
-  const [one, other] = chosen.value.map((id) => all.find((training) => training.id === id));
-  const first = one ?? all.find((training) => training !== other);
+  const [wanted, other] = chosen.value.map((id) => all.find((training) => training.id === id));
+  const first = wanted ?? all.find((training) => training !== other);
   const second = other && other !== first ? other : all.find((training) => training !== first);
   return [first, second].filter((training) => training !== undefined);
 });
@@ -54,12 +54,12 @@ function Choice() {
   };
   return html`
     <div class="policy-choice">
-      ${two.value.map((one, number) => html`
+      ${two.value.map((training, number) => html`
         <label class="choice">
           <span>${number === 0 ? "Policy of" : "and of"}</span>
           <select onChange=${choose(number)}>
             ${trainings.value.map(({ id, letter, title }) => html`
-              <option value=${id} selected=${id === one.id}>${letter}: ${title}</option>
+              <option value=${id} selected=${id === training.id}>${letter}: ${title}</option>
             `)}
           </select>
         </label>
@@ -82,13 +82,13 @@ function Answered() {
   if (answers.some((answer) => answer === null)) {
     return html`<p role="status"><span class="spinner" aria-hidden="true"></span> Building the tables again…</p>`;
   }
-  const [one, other] = answers.flatMap((answer) => answer?.table ?? []);
-  if (!haveSameStates(one, other)) {
+  const [first, other] = answers.flatMap((answer) => answer?.table ?? []);
+  if (!haveSameStates(first, other)) {
     return html`
       <p class="dim">Their states are not the same: they move other groups of legs, or have another foot grid.</p>
     `;
   }
-  return html`<${Differences} tables=${[one, other]} />`;
+  return html`<${Differences} tables=${[first, other]} />`;
 }
 
 /** @param {{ tables: WholeTable[] }} props */
@@ -121,8 +121,8 @@ const States = ({ shown, grid }) => html`
       <thead>
         <tr>
           <th scope="col">State</th>
-          ${two.value.map((one) => html`
-            <th scope="col" key=${one.id}><${Key} one=${one} /> best move, its value</th>
+          ${two.value.map((training) => html`
+            <th scope="col" key=${training.id}><${Key} one=${training} /> best move, its value</th>
           `)}
         </tr>
       </thead>

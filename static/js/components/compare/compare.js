@@ -27,7 +27,7 @@ export function Compare() {
           <p class="dim details-facts">${commonFacts(comparable.value.map(({ run }) => run)).join(" · ")}</p>
         </div>
         <div class="details-body">
-          <ul class="compared">${all.map((one) => html`<${ComparedRun} key=${one.id} one=${one} />`)}</ul>
+          <ul class="compared">${all.map((entry) => html`<${ComparedRun} key=${entry.id} one=${entry} />`)}</ul>
           ${leftOut.value > 0 && html`
             <p class="notice" role="status">
               Up to ${MAX_COMPARED} runs are compared; the link names ${leftOut.value} more, which are left out.
@@ -75,11 +75,11 @@ function TooFew() {
 }
 
 /** @param {{ one: Compared }} props */
-function ComparedRun({ one }) {
-  const { id, letter, title, run, problem } = one;
+function ComparedRun({ one: entry }) {
+  const { id, letter, title, run, problem } = entry;
   return html`
     <li>
-      <${Key} one=${one} />
+      <${Key} one=${entry} />
       <span class="compared-run">
         <b>${title}</b>
         ${run && html` <span class="dim">${run.kind}, ${run.state}</span>`}
@@ -89,7 +89,7 @@ function ComparedRun({ one }) {
       ${run && run.progress.done > 0 && html`
         <span class="compared-links">
           <${ReplayLink} id=${id} label=${`Replay ${letter}`}>Replay<//>
-          <${GhostLink} one=${one} />
+          <${GhostLink} one=${entry} />
         </span>
       `}
       <button class="quiet square small" aria-label=${`Leave out ${title}`} title="Leave out"
@@ -102,11 +102,11 @@ function ComparedRun({ one }) {
  * A replay of the first run with this one's robots as ghosts, or of this one with the first's.
  * @param {{ one: Compared }} props
  */
-function GhostLink({ one }) {
+function GhostLink({ one: entry }) {
   const [first] = comparable.value;
-  if (!first?.run || !one.run || first.id === one.id) return null;
-  if (first.run.kind !== one.run.kind || !first.run.progress.done) return null;
-  const [shown, ghost] = isActive(one.run) ? [one, first] : [first, one];
+  if (!first?.run || !entry.run || first.id === entry.id) return null;
+  if (first.run.kind !== entry.run.kind || !first.run.progress.done) return null;
+  const [shown, ghost] = isActive(entry.run) ? [entry, first] : [first, entry];
   if (isActive(ghost.run)) return null;
   const words = `${shown.letter} with ${ghost.letter} as ghost`;
   return html`<${ReplayLink} id=${shown.id} ghost=${ghost.id} label=${`Replay ${words}`}>${words}<//>`;

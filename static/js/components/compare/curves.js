@@ -56,7 +56,8 @@ export function CurvesChart({ curves, greedy = null }) {
     text: (/** @type {number} */ step) => count(step, "step"),
   };
   const y = {
-    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest([...distances, greedy ?? 0], MIN_TOP_M),
+    min: -largest(distances.map((distance) => -distance), 0),
+    max: HEADROOM * largest([...distances, greedy ?? 0], MIN_TOP_M),
     unit: "m", text: metres,
   };
   const marks = greedy === null ? [] : [{ y: greedy, name: "Greedy", kind: "greedy", ink: "--dim", text: "Greedy" }];

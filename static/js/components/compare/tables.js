@@ -45,8 +45,9 @@ const Columns = ({ label, rows, isMarked = false }) => html`
       <thead>
         <tr>
           <td></td>
-          ${comparable.value.map((one) => html`
-            <th scope="col" key=${one.id}><${Key} one=${one} /> <span class="column-title">${one.title}</span></th>
+          ${comparable.value.map((entry) => html`
+            <th scope="col" key=${entry.id}>
+              <${Key} one=${entry} /> <span class="column-title">${entry.title}</span></th>
           `)}
         </tr>
       </thead>

@@ -103,9 +103,9 @@ function Tags() {
   if (all.length === 0) return null;
   return html`
     <div class="tags" role="group" aria-label="Tag">
-      ${all.map((one) => html`
-        <button key=${one} class="tag-chip" aria-pressed=${one === tag ? "true" : "false"}
-          onClick=${() => setFilters({ tag: one === tag ? "" : one })}>${one}</button>
+      ${all.map((name) => html`
+        <button key=${name} class="tag-chip" aria-pressed=${name === tag ? "true" : "false"}
+          onClick=${() => setFilters({ tag: name === tag ? "" : name })}>${name}</button>
       `)}
     </div>
   `;
@@ -164,7 +164,7 @@ const STOPS = [".run-box input", ".run-open"];
  */
 function moveByKey(event) {
   const { key, target, shiftKey } = event;
-  const stop = STOPS.find((one) => target.matches(one));
+  const stop = STOPS.find((selector) => target.matches(selector));
   if (!stop) return;
   if (key in STEPS) {
     const all = /** @type {HTMLElement[]} */ ([...event.currentTarget.querySelectorAll(stop)]);

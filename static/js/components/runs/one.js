@@ -54,7 +54,7 @@ export function RaceResult({ run }) {
   if (lanes.length === 0) {
     return html`<p class="dim">${run.config.lanes.map(laneTitle).join(", ")}: without a result so far.</p>`;
   }
-  const most = Math.max(...lanes.map((one) => one.finished_distance_m ?? 0), 1e-9);
+  const most = Math.max(...lanes.map((lane) => lane.finished_distance_m ?? 0), 1e-9);
   return html`
     <table class="results lanes">
       <caption class="sr-only">Lanes under the paper clock</caption>

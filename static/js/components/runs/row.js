@@ -98,7 +98,7 @@ const MAIN = ["distance", "created"];
 /** @param {{ run: AnyRun }} props */
 function Cells({ run }) {
   const names = shownColumns.value;
-  const [others, main] = [names.filter((one) => !MAIN.includes(one)), names.filter((one) => MAIN.includes(one))];
+  const [others, main] = [names.filter((name) => !MAIN.includes(name)), names.filter((name) => MAIN.includes(name))];
   return html`
     ${others.length > 0 && html`
       <div class="cells">${others.map((name) => html`<${Cell} key=${name} name=${name} run=${run} />`)}</div>

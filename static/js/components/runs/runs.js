@@ -68,7 +68,7 @@ const Choice = ({ label, choices, value, onValue }) => html`
   <label class="choice">
     <span class="sr-only">${label}</span>
     <select onChange=${(/** @type {Changed} */ { target }) => onValue(target.value)}>
-      ${choices.map(([one, title]) => html`<option value=${one} selected=${one === value}>${title}</option>`)}
+      ${choices.map(([choice, title]) => html`<option value=${choice} selected=${choice === value}>${title}</option>`)}
     </select>
   </label>
 `;
