@@ -66,13 +66,13 @@ export async function attempt(place, action) {
  */
 function oneAtATime(place, send) {
   let [sent, waiting] = /** @type {(Asked | null)[]} */ ([null, null]);
-  const request = async (/** @type {Asked} */ asked) => {
+  const request = async (/** @type {Asked} */ change) => {
     if (pending.value[place]) {
-      waiting = /** @type {Asked} */ ({ ...waiting, ...asked });
+      waiting = /** @type {Asked} */ ({ ...waiting, ...change });
       return;
     }
-    sent = asked;
-    await attempt(place, () => send(asked));
+    sent = change;
+    await attempt(place, () => send(change));
     const next = waiting;
     sent = waiting = null;
     if (next) await request(next);
@@ -97,10 +97,10 @@ export const missingLane = computed(() => {
   const { agent, lanes } = form.value;
   if (!hasLearner.value || lanes.includes(agent)) return null;
   const { title } = agentOf(agent);
-  const others = listed(racingLearners.value.map((name) => agentOf(name).title));
+  const otherTitles = listed(racingLearners.value.map((name) => agentOf(name).title));
   const isFixed = lanes.length >= (limitsOf("lanes").maximum ?? Infinity) || isClosed("lanes");
   const action = { label: `Add ${title}`, run: () => setField("lanes", [agent, ...lanes]) };
-  return { words: `${title} is not in the race; ${others} will learn and race.`, action: isFixed ? null : action };
+  return { words: `${title} is not in the race; ${otherTitles} will learn and race.`, action: isFixed ? null : action };
 });
 
 /** "Practise 500 more" */
@@ -327,13 +327,13 @@ export const annotate = (run, changes) =>
 export function copySettings(run) {
   /** @type {Walk & { [field: string]: unknown }} */
   const config = run.kind === "race" ? configOfRace(run) : flat(configAtEnd(run));
-  const { robot, agent, disturbances = [], ...others } = config;
+  const { robot, agent, disturbances = [], ...fields } = config;
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
-  const known = Object.keys({
+  const fieldNames = Object.keys({
     ...form.value, ...settingsOf([form.value.agent, ...racing]), ...laneSettings(racing),
   });
-  const taken = Object.entries(others).filter(([field]) => known.includes(field) && field !== "name");
+  const taken = Object.entries(fields).filter(([field]) => fieldNames.includes(field) && field !== "name");
   const happens = { world: served().worlds[0].name, disturb: disturbances.map(textOf) };
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot, ...happens });
 }
@@ -363,10 +363,10 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
   });
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
-  const own = lanes.map(asAsked).map(flat)
+  const settingsOfLanes = lanes.map(asAsked).map(flat)
     .flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));
   const agents = lanes.map(({ agent }) => agent);
-  return { ...practice, ...walk, ...Object.fromEntries(own), race_steps: steps, lanes: agents };
+  return { ...practice, ...walk, ...Object.fromEntries(settingsOfLanes), race_steps: steps, lanes: agents };
 }
 
 /** @param {Run} run */

@@ -87,7 +87,7 @@ export async function patiently(ask, isWanted) {
 export function askForNewest({ key, ask, forget = () => {}, pause_ms }) {
   const wanted = computed(key);
   /** The key of what is known; null after an error that may pass. @type {string | null} */
-  let known = "";
+  let answered = "";
   let [isBusy, isOver] = [false, false];
 
   /** @param {string} now */
@@ -95,29 +95,29 @@ export function askForNewest({ key, ask, forget = () => {}, pause_ms }) {
     isBusy = true;
     try {
       await ask(now);
-      known = now;
+      answered = now;
     } catch (failure) {
-      known = isLasting(/** @type {RequestError} */ (failure)) ? now : null;
+      answered = isLasting(/** @type {RequestError} */ (failure)) ? now : null;
     }
     setTimeout(() => {
       isBusy = false;
       look();
-    }, Math.max(known === null ? AGAIN_MS : 0, pause_ms()));
+    }, Math.max(answered === null ? AGAIN_MS : 0, pause_ms()));
   }
 
   function look() {
     const now = wanted.peek();
-    if (isBusy || isOver || now === known) return;
+    if (isBusy || isOver || now === answered) return;
     if (now) {
       send(now);
       return;
     }
-    known = "";
+    answered = "";
     forget();
   }
 
   const stop = effect(() => {
-    if (wanted.value !== known) untracked(look);
+    if (wanted.value !== answered) untracked(look);
   });
   return () => {
     isOver = true;
@@ -213,10 +213,10 @@ export async function request(method, path, body, headers = {}) {
 
 /**
  * As `request`.
- * @param {Parameters<typeof request>} given
+ * @param {Parameters<typeof request>} options
  * @returns {Promise<any>} the answer's JSON, null where there is none
  */
-export const call = async (...given) => parse(await (await request(...given)).text());
+export const call = async (...options) => parse(await (await request(...options)).text());
 
 /** @param {Kind} kind */
 const collection = (kind) => `${kind}s`;
@@ -237,8 +237,8 @@ export const getAnyRun = (id) => call("GET", `runs/${encodeURIComponent(id)}`);
  * @type {(query: Record<string, string | null>) => Promise<Page<Run>>}
  */
 export const listRuns = (query) => {
-  const given = Object.entries(query).flatMap(([name, value]) => (value ? [[name, value]] : []));
-  return call("GET", `runs?${new URLSearchParams(given)}`);
+  const filters = Object.entries(query).flatMap(([name, value]) => (value ? [[name, value]] : []));
+  return call("GET", `runs?${new URLSearchParams(filters)}`);
 };
 
 const RETRY_MS = 500;

@@ -60,9 +60,9 @@ const MARGIN_OF_Y = 0.1;
  * @param {Range} whole
  */
 export function zoomTo(axis, part, whole) {
-  const { [axis]: _, ...others } = zooms.value;
+  const { [axis]: _, ...otherZooms } = zooms.value;
   const shown = part && within(part, whole);
-  zooms.value = shown && (shown[0] > whole[0] || shown[1] < whole[1]) ? { ...others, [axis]: shown } : others;
+  zooms.value = shown && (shown[0] > whole[0] || shown[1] < whole[1]) ? { ...otherZooms, [axis]: shown } : otherZooms;
 }
 
 /**

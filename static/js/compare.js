@@ -53,9 +53,9 @@ export function followCompared() {
 
 /** Names of the runs that are known, by what they differ in. @type {Signal<Map<string, string>>} */
 const names = computed(() => {
-  const known = comparedIds.value.flatMap((id) => runs.value.get(id) ?? []);
-  const all = namesAmong(known);
-  return new Map(known.map(({ id }, n) => [id, all[n]]));
+  const comparedRuns = comparedIds.value.flatMap((id) => runs.value.get(id) ?? []);
+  const all = namesAmong(comparedRuns);
+  return new Map(comparedRuns.map(({ id }, n) => [id, all[n]]));
 });
 
 /** @type {Signal<Compared[]>} */
@@ -157,7 +157,7 @@ const DISTURBANCES = [
 /** The settings of trainings and races side by side. @param {Run[]} all */
 export function settingRows(all) {
   const agents = [...new Set(all.flatMap(({ config: { agent } }) => (agent ? [agent] : [])))];
-  const own = Object.entries(settingsOf(agents)).map(([name, setting]) =>
+  const agentRows = Object.entries(settingsOf(agents)).map(([name, setting]) =>
     row(name, fullTitle(setting), all.map(({ config }) =>
       valueInWords(setting, config.agent ? config.settings[name] : null))));
   const plain = PLAIN.map(([name, kind]) => {
@@ -166,9 +166,9 @@ export function settingRows(all) {
     const cells = all.map((run) => (["", run.kind].includes(kind) ? valueInWords(setting, run.config[field]) : null));
     return row(name, fullTitle(setting), cells);
   });
-  const told = (/** @type {typeof SETTINGS} */ list) =>
+  const rowsOfSettings = (/** @type {typeof SETTINGS} */ list) =>
     list.map(([name, title, cell]) => row(name, title, all.map(cell)));
-  return [...told(SETTINGS), ...plain, ...own, ...told(DISTURBANCES)].filter(isTold);
+  return [...rowsOfSettings(SETTINGS), ...plain, ...agentRows, ...rowsOfSettings(DISTURBANCES)].filter(isTold);
 }
 
 /** The settings of the runs that are compared. */
@@ -223,8 +223,8 @@ export const comparedResults = computed(() => {
   const isAlike = all.length > 1 && all.every(({ kind }) => kind === all[0].kind);
   const best = isAlike ? distances.flatMap((distance, n) => (distance !== null && distance === most ? [n] : [])) : [];
   const shares = all.map((run, n) => {
-    const [own, greedy] = [distances[n], greedyOf(run)];
-    return own !== null && greedy ? percentage(own / greedy) : null;
+    const [distance, greedy] = [distances[n], greedyOf(run)];
+    return distance !== null && greedy ? percentage(distance / greedy) : null;
   });
   const practised = (/** @type {Run} */ { kind, progress }) =>
     (kind === "training" ? count(progress.done, "step") : null);

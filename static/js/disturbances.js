@@ -95,8 +95,8 @@ function isNothing(disturbance, robot) {
  */
 export function changesSomething(disturbance, conditions, robot) {
   if (!kindNamed(disturbance.kind)?.repairs && !isNothing(disturbance, robot)) return true;
-  const own = keysOf(disturbance);
-  return conditions.some((other) => keysOf(other).some((key) => own.some((mine) => covers(mine, key))));
+  const keys = keysOf(disturbance);
+  return conditions.some((other) => keysOf(other).some((key) => keys.some((mine) => covers(mine, key))));
 }
 
 /**
@@ -107,10 +107,10 @@ export function changesSomething(disturbance, conditions, robot) {
  * @param {RobotConfig} [robot]
  */
 export function chosenWith(chosen, disturbance, before, robot) {
-  const own = keysOf(disturbance);
-  const isKept = (/** @type {string} */ key) => !own.some((mine) => covers(mine, key) || covers(key, mine));
-  const kept = chosen.flatMap(partsOf).flatMap(([key, part]) => (isKept(key) ? [part] : []));
-  return [...kept, ...(changesSomething(disturbance, before, robot) ? [disturbance] : [])];
+  const keys = keysOf(disturbance);
+  const isKept = (/** @type {string} */ key) => !keys.some((mine) => covers(mine, key) || covers(key, mine));
+  const remaining = chosen.flatMap(partsOf).flatMap(([key, part]) => (isKept(key) ? [part] : []));
+  return [...remaining, ...(changesSomething(disturbance, before, robot) ? [disturbance] : [])];
 }
 
 /**
@@ -173,15 +173,15 @@ export function inWords(disturbance) {
 /** Merge the same disturbance of several legs. @param {Disturbance[]} parts */
 function joined(parts) {
   /** @type {Map<string, Disturbance>} */
-  const found = new Map();
+  const byWords = new Map();
   for (const condition of parts) {
     const { legs, ...rest } = condition;
     const key = JSON.stringify({ ...rest, at_step: 0, until_step: 0, legs: Boolean(legs) });
-    const before = found.get(key);
+    const before = byWords.get(key);
     const all = legs && before?.legs ? [...new Set([...before.legs, ...legs])].sort((a, b) => a - b) : legs;
-    found.set(key, all ? { ...condition, legs: all } : condition);
+    byWords.set(key, all ? { ...condition, legs: all } : condition);
   }
-  return [...found.values()];
+  return [...byWords.values()];
 }
 
 /**
@@ -235,12 +235,12 @@ export function legStates(conditions) {
  * @param {{ kind: string, [field: string]: any }} wanted without the leg
  */
 export function pressed(conditions, leg, wanted) {
-  const own = conditions.filter((condition) => legsOf(condition).includes(leg));
+  const ofLeg = conditions.filter((condition) => legsOf(condition).includes(leg));
   const isSame = (/** @type {Disturbance} */ disturbance) =>
     (disturbance.legs && !kindNamed(disturbance.kind)?.part.length)
     || Object.entries(wanted).every(([name, value]) => disturbance[name] === value);
   const repair = options.value?.disturbances.find(({ repairs }) => repairs)?.name ?? "";
-  if (wanted.kind === repair || own.some(isSame)) return { kind: repair, legs: [leg] };
+  if (wanted.kind === repair || ofLeg.some(isSame)) return { kind: repair, legs: [leg] };
   return { ...wanted, ...(kindNamed(wanted.kind)?.fields.legs ? { legs: [leg] } : { leg }) };
 }
 
@@ -287,10 +287,10 @@ export function withField(text, field, value) {
  */
 export const textOf = ({ kind, ...fields }) => {
   const order = Object.keys(kindNamed(kind)?.fields ?? {});
-  const given = Object.entries(fields).filter(([name, value]) =>
+  const set = Object.entries(fields).filter(([name, value]) =>
     value !== null && value !== undefined && value !== kindNamed(kind)?.fields[name]?.default);
-  given.sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
-  return joinText(kind, given.map(([name, value]) => [shortName(kind, name), String(value)]));
+  set.sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
+  return joinText(kind, set.map(([name, value]) => [shortName(kind, name), String(value)]));
 };
 
 /** @type {(text: string, field: FieldOption) => Parsed<any>} */
@@ -317,7 +317,7 @@ export function parseText(text, robot) {
   const kind = kindFor(name, robot, legIn(fields));
   if (!kind) return { mistake: `${quoted(name)} is nothing that can happen: choose one of these` };
   /** @type {Disturbance} */
-  const found = { kind: name, at_step: 0 };
+  const disturbance = { kind: name, at_step: 0 };
   const seen = new Set();
   for (const [short, value] of fields) {
     const field = Object.keys(kind.fields).find((key) => key === short || kind.fields[key].short === short);
@@ -328,17 +328,18 @@ export function parseText(text, robot) {
     const title = kind.fields[field].title.toLowerCase();
     if (mistake !== undefined && STEPS.includes(field)) return { mistake: `${kind.title}: enter a step, from 1` };
     if (mistake !== undefined) return { mistake: `${kind.title}, ${title}: ${mistake}` };
-    found[field] = read;
+    disturbance[field] = read;
   }
   const missing = Object.entries(kind.fields).filter(([field, { is_required }]) => is_required && !seen.has(field));
   if (missing.length) {
     return { mistake: `${kind.title}: give ${listed(missing.map(([, { title }]) => title.toLowerCase()))}` };
   }
-  for (const [own, field] of Object.entries(kind.fields).filter(([, { ranges }]) => ranges)) {
-    const mistake = mistakeIn(/** @type {number} */ (found[own]), fieldBeside(field, found), field.is_whole);
+  for (const [name_, field] of Object.entries(kind.fields).filter(([, { ranges }]) => ranges)) {
+    const number = /** @type {number} */ (disturbance[name_]);
+    const mistake = mistakeIn(number, fieldBeside(field, disturbance), field.is_whole);
     if (mistake) return { mistake: `${kind.title}, ${field.title.toLowerCase()}: ${mistake}` };
   }
-  return { value: found };
+  return { value: disturbance };
 }
 
 /** @param {DisturbanceKind} kind */

@@ -76,8 +76,8 @@ function read(field, text, agents) {
  */
 function commonDefaults() {
   const { training, race } = served().defaults;
-  const others = ["agent", "disturbances", "settings"];
-  const common = Object.entries(training).filter(([field]) => !others.includes(field));
+  const notLimited = ["agent", "disturbances", "settings"];
+  const common = Object.entries(training).filter(([field]) => !notLimited.includes(field));
   return { ...Object.fromEntries(common), world: served().worlds[0].name, race_steps: race.steps, name: "" };
 }
 
@@ -112,8 +112,8 @@ function complete() {
 
 /** The form without the settings of the chosen learner. */
 const commonFields = () => {
-  const own = settingsOf([form.value.agent]);
-  return select(form.value, (field) => !(field in own));
+  const agentSettings = settingsOf([form.value.agent]);
+  return select(form.value, (field) => !(field in agentSettings));
 };
 
 /** The common fields, and the settings of the chosen learner. */
@@ -128,13 +128,13 @@ const learnersInUse = computed(() => [...new Set([form.value.agent, ...form.valu
  */
 export const wrong = computed(() => {
   /** @type {Record<string, { text: string, mistake: string }>} */
-  const found = {};
-  if (!options.value) return found;
-  const given = texts().value;
+  const errors = {};
+  if (!options.value) return errors;
+  const typed = texts().value;
   const check = (/** @type {string} */ field, /** @type {string[]} */ agents) => {
-    const text = given.get(field);
+    const text = typed.get(field);
     const { mistake } = text === null ? {} : read(field, text, agents);
-    if (text !== null && mistake !== undefined) found[field] ??= { text, mistake };
+    if (text !== null && mistake !== undefined) errors[field] ??= { text, mistake };
   };
   for (const agent of learnersInUse.value) Object.keys(settingsOf([agent])).forEach((name) => check(name, [agent]));
   for (const field of Object.keys({ ...commonDefaults(), agent: "", lanes: "" })) check(field, []);
@@ -142,12 +142,12 @@ export const wrong = computed(() => {
   Object.keys(laneSettings(lanes)).forEach((field) => check(field, lanes));
   const { world, disturb, simulator, robot } = form.value;
   const impossible = disturbancesOf(world).find(({ kind }) => !isSimulated(kind, simulator));
-  if (impossible) found.world ??= { text: world, mistake: unknownTo(simulator, impossible.kind) };
+  if (impossible) errors.world ??= { text: world, mistake: unknownTo(simulator, impossible.kind) };
   for (const text of disturb) {
     const mistake = mistakeInText(text, simulator, robot);
-    if (mistake) found[REPEATED] ??= { text, mistake };
+    if (mistake) errors[REPEATED] ??= { text, mistake };
   }
-  return found;
+  return errors;
 });
 
 /** Disturbances of a named world. @param {string} name */
@@ -155,8 +155,8 @@ const disturbancesOf = (name) => served().worlds.find((world) => world.name === 
 
 /** @type {(simulator: string, kind: string) => string} */
 export function unknownTo(simulator, kind) {
-  const others = served().simulators.map(({ name }) => name).filter((name) => isSimulated(kind, name));
-  return `The ${simulator} simulator knows no ${kind}: choose ${listed(others)}`;
+  const simulators = served().simulators.map(({ name }) => name).filter((name) => isSimulated(kind, name));
+  return `The ${simulator} simulator knows no ${kind}: choose ${listed(simulators)}`;
 }
 
 /**
@@ -228,16 +228,16 @@ const optionOf = (robot) => served().robots.find(({ name }) => name === robot);
  * @param {RobotConfig} robot
  */
 export function chooseRobot(robot) {
-  const known = optionOf(robot);
+  const preset = optionOf(robot);
   /** @type {GaitConfig[]} */
-  const gaits = known?.gaits ?? [];
-  const keeps = !known || (texts().peek().has("gait") && gaits.includes(form.value.gait));
+  const gaits = preset?.gaits ?? [];
+  const keeps = !preset || (texts().peek().has("gait") && gaits.includes(form.value.gait));
   const usual = optionOf(form.value.robot)?.grid_side_m ?? served().robots[0].grid_side_m;
-  const isUsual = known && form.value.grid_side_m === usual;
+  const isUsual = preset && form.value.grid_side_m === usual;
   setFields({
     robot,
-    ...(keeps ? {} : { gait: /** @type {FormValue} */ (known.gait) }),
-    ...(isUsual ? { grid_side_m: known.grid_side_m } : {}),
+    ...(keeps ? {} : { gait: /** @type {FormValue} */ (preset.gait) }),
+    ...(isUsual ? { grid_side_m: preset.grid_side_m } : {}),
   });
 }
 
@@ -258,27 +258,28 @@ export function enter(field, text) {
  */
 function isDefault(field, text) {
   const { agent, lanes } = form.value;
-  const own = [...learnersInUse.value.map((learner) => settingsOf([learner])), laneSettings(lanes)].map((settings) =>
+  const ofLearners = learnersInUse.value.map((learner) => settingsOf([learner]));
+  const settingDefaults = [...ofLearners, laneSettings(lanes)].map((settings) =>
     Object.fromEntries(Object.entries(settings).map(([name, setting]) => [name, setting.default])));
   const common = { ...commonDefaults(), agent: served().defaults.training.agent, lanes: defaultLanes(agent) };
-  const found = [common, ...own].filter((defaults) => field in defaults);
-  return found.length > 0 && found.every((defaults) => written(Reflect.get(defaults, field)) === text);
+  const having = [common, ...settingDefaults].filter((defaults) => field in defaults);
+  return having.length > 0 && having.every((defaults) => written(Reflect.get(defaults, field)) === text);
 }
 
 /** Leave out of the texts what is so by default. */
 function leaveOutDefaults() {
-  const kept = [...texts().peek()].filter(([field, text]) => field in wrong.value || !isDefault(field, text));
-  texts().value = new URLSearchParams(kept);
+  const notDefault = [...texts().peek()].filter(([field, text]) => field in wrong.value || !isDefault(field, text));
+  texts().value = new URLSearchParams(notDefault);
 }
 
 /** Read the form of the link that was opened: what is no field is told, and what is the default left out. */
 export const openForm = () => batch(() => {
   const agents = [form.value.agent, ...form.value.lanes];
-  const known = { ...form.value, ...served().settings, ...settingsOf(agents), ...laneSettings(agents) };
-  const given = [...page.form.peek()];
-  const others = given.filter(([field]) => !(field in known)).map((part) => part.join("="));
-  ignored.query.value = [...ignored.query.peek(), ...others];
-  page.form.value = new URLSearchParams(given.filter(([field]) => field in known));
+  const valid = { ...form.value, ...served().settings, ...settingsOf(agents), ...laneSettings(agents) };
+  const entries = [...page.form.peek()];
+  const unknown = entries.filter(([field]) => !(field in valid)).map((entry) => entry.join("="));
+  ignored.query.value = [...ignored.query.peek(), ...unknown];
+  page.form.value = new URLSearchParams(entries.filter(([field]) => field in valid));
   learnerIsChosen.value = page.form.peek().has("agent");
   // What a link says goes before what is preset, the default too.
   if (!isPreset.peek()) leaveOutDefaults();
@@ -356,13 +357,13 @@ export const trainingBody = (continueFrom = null) => {
  */
 function laneFields(agent) {
   const { settings } = agentOf(agent);
-  const given = Object.entries(laneSettings([agent]))
+  const typed = Object.entries(laneSettings([agent]))
     .map(([field, setting]) => ({ name: field.slice(agent.length + 1), value: form.value[field], setting }))
     .filter(({ value }) => value !== null);
-  const own = given.filter(({ name }) => name in settings).map(({ name, value }) => [name, value]);
-  const others = given.filter(({ name, value, setting }) => !(name in settings) && value !== setting.default);
-  const ofAgent = own.length ? { settings: Object.fromEntries(own) } : {};
-  return { ...Object.fromEntries(others.map(({ name, value }) => [name, value])), ...ofAgent };
+  const agentValues = typed.filter(({ name }) => name in settings).map(({ name, value }) => [name, value]);
+  const laneValues = typed.filter(({ name, value, setting }) => !(name in settings) && value !== setting.default);
+  const ofAgent = agentValues.length ? { settings: Object.fromEntries(agentValues) } : {};
+  return { ...Object.fromEntries(laneValues.map(({ name, value }) => [name, value])), ...ofAgent };
 }
 
 /** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */
@@ -378,10 +379,10 @@ export const raceBody = ({ continued = {}, tables = {}, isUnpractised = false } 
   steps: form.value.race_steps,
   seed: form.value.seed,
   lanes: form.value.lanes.map((agent) => {
-    const own = laneFields(agent);
-    if (!learns(agent)) return { agent, ...own };
-    if (isUnpractised) return { agent, ...own, observation: form.value.observation, settings: ownSettings(agent) };
-    if (tables[agent]) return { agent, ...own, training_id: tables[agent] };
-    return { agent, ...own, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
+    const fields = laneFields(agent);
+    if (!learns(agent)) return { agent, ...fields };
+    if (isUnpractised) return { agent, ...fields, observation: form.value.observation, settings: ownSettings(agent) };
+    if (tables[agent]) return { agent, ...fields, training_id: tables[agent] };
+    return { agent, ...fields, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
   }),
 });

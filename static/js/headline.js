@@ -30,8 +30,8 @@ const happenedIn = (run) => joinedBySteps(run ? disturbancesOf(run) : [])
 
 /** The tests of the practice on stage, in its own steps. @param {Run | null} run */
 function testsOf(run) {
-  const known = curve.value?.run.id === run?.id ? curve.value : null;
-  return (known?.points ?? []).map((point) => ({ ...point, step: point.step - (known?.from ?? 0) }));
+  const learningCurve = curve.value?.run.id === run?.id ? curve.value : null;
+  return (learningCurve?.points ?? []).map((point) => ({ ...point, step: point.step - (learningCurve?.from ?? 0) }));
 }
 
 /** Of which run the ghosts are, and how far they came; null without any. */
@@ -47,7 +47,7 @@ function ghostsInWords() {
 const sceneOf = (run) => (!run || scene.value?.run_id === run.id ? scene.value : null);
 
 /** @type {ReadonlySignal<Known>} */
-const known = computed(() => {
+const situation = computed(() => {
   const run = shownRun.value;
   return {
     ...knownRace.value, run, race: run?.kind === "race" ? run : raceInView.value,
@@ -63,7 +63,7 @@ const known = computed(() => {
 });
 
 /** All that is said of it: see `narrativeOf`. */
-export const narrative = computed(() => narrativeOf(known.value));
+export const narrative = computed(() => narrativeOf(situation.value));
 
 /** How it stands in one sentence, where it is one of the run on stage; else null. */
 export const headline = computed(() => (narrative.value.isOfRun ? narrative.value.headline : null));

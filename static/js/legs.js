@@ -22,8 +22,8 @@ export const legPoints = signal([]);
 /** The lane that the camera follows: of the leader where it follows that. */
 const followedLane = () => {
   const lanes = scene.peek()?.lanes ?? [];
-  const own = Number(page.camera.peek()) - 1;
-  return lanes[own] ? own : lanes.find(({ rank }) => rank === 1)?.lane ?? 0;
+  const lane = Number(page.camera.peek()) - 1;
+  return lanes[lane] ? lane : lanes.find(({ rank }) => rank === 1)?.lane ?? 0;
 };
 
 /** Number the legs of the robot that is followed. */

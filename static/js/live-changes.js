@@ -30,10 +30,10 @@ export function tune(changes) {
     return;
   }
   unsent = { ...changes };
-  const others = new Promise((resolve) => {
+  const pause = new Promise((resolve) => {
     setTimeout(resolve, TUNE_MS);
   });
-  lastTuned = Promise.all([lastTuned, others]).then(async () => {
+  lastTuned = Promise.all([lastTuned, pause]).then(async () => {
     const sent = unsent ?? {};
     unsent = null;
     await api.tuneTraining(run.id, sent).then(
@@ -45,11 +45,11 @@ export function tune(changes) {
 
 /** @type {(run: Run, sent: Rates, error: RequestError) => void} */
 function refuseTuning(run, sent, error) {
-  const kept = Object.entries(rates.value[run.id] ?? {}).filter(([name, value]) => sent[name] !== value);
-  setEntry(rates, run.id, Object.fromEntries(kept));
-  const known = runs.value.get(run.id);
-  const isTooLate = error.status === CONFLICT && !isActive(known);
-  setEntry(problems, "tune", isTooLate ? new api.RequestError(tooLate(known ?? run)) : error);
+  const remaining = Object.entries(rates.value[run.id] ?? {}).filter(([name, value]) => sent[name] !== value);
+  setEntry(rates, run.id, Object.fromEntries(remaining));
+  const run_ = runs.value.get(run.id);
+  const isTooLate = error.status === CONFLICT && !isActive(run_);
+  setEntry(problems, "tune", isTooLate ? new api.RequestError(tooLate(run_ ?? run)) : error);
 }
 
 const CONFLICT = 409;
@@ -81,10 +81,10 @@ let lastChange = Promise.resolve(/** @type {{ id: string, changes: Change[] } | 
  */
 export function disturb(run, disturbance) {
   lastChange = lastChange.then(async (last) => {
-    const known = runs.value.get(run.id) ?? run;
+    const newest = runs.value.get(run.id) ?? run;
     // The event that tells of the last one may come after its answer.
-    const changes = [...known.changes ?? [], ...(last?.id === run.id ? last.changes : [])];
-    if (!changesSomething(disturbance, conditionsNow({ ...known, changes }), known.config.robot)) return last;
+    const changes = [...newest.changes ?? [], ...(last?.id === run.id ? last.changes : [])];
+    if (!changesSomething(disturbance, conditionsNow({ ...newest, changes }), newest.config.robot)) return last;
     const happened = await attempt("disturb", () => api.disturbTraining(run.id, disturbance));
     return happened && { id: run.id, changes: [{ step: happened.at_step, disturbance: happened }] };
   });

@@ -169,8 +169,8 @@ const fits = (training, values) =>
 
 /** The trainings whose tables fit the form: those on stage first, then this tab's. */
 const fittingTrainings = computed(() => {
-  const known = [raceInView.value, shownRun.value, ...myRuns.value.map(runOf)];
-  const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(runOf) : [run]));
+  const shownRuns = [raceInView.value, shownRun.value, ...myRuns.value.map(runOf)];
+  const trainings = shownRuns.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(runOf) : [run]));
   // A guest begins with a robot of their own, whatever the stage shows of others.
   const isUsable = (/** @type {Run} */ run) => !isGuest.value || myRuns.value.includes(run.id);
   return trainings.filter(isKnown).filter((run) => isUsable(run) && fits(run, form.value));
@@ -358,5 +358,5 @@ export function windowTitle(view, headline) {
   const parts = [title ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];
   if (isLockedOut.value) parts.splice(0, 1, "No access");
   else if (isAway.value) parts.unshift("Reconnecting");
-  return [...parts, PRODUCT].filter(Boolean).map((part) => sentence(/** @type {string} */ (part))).join(" · ");
+  return [...parts, PRODUCT].filter(Boolean).map((word) => sentence(/** @type {string} */ (word))).join(" · ");
 }

@@ -65,8 +65,8 @@ const noneOrOneOf = (words) => ({
 const severalOf = (words) => ({
   ...LIST,
   read: (text) => {
-    const given = LIST.read(text) ?? [];
-    return given.every((word) => words.includes(word)) ? given : undefined;
+    const wanted = LIST.read(text) ?? [];
+    return wanted.every((word) => words.includes(word)) ? wanted : undefined;
   },
   words,
 });
@@ -259,8 +259,8 @@ function partsOf({ search, hash }) {
 /** @type {(field: Field<any>, query: URLSearchParams) => any} */
 function readField({ part, name, initial, read, words }, query) {
   if (name === null) {
-    const others = ENTRIES.filter(([, field]) => field.part === part).map(([, field]) => field.name);
-    return new URLSearchParams([...query].filter(([key]) => !others.includes(key)));
+    const otherNames = ENTRIES.filter(([, field]) => field.part === part).map(([, field]) => field.name);
+    return new URLSearchParams([...query].filter(([key]) => !otherNames.includes(key)));
   }
   const text = query.get(name);
   const value = text === null ? initial : read(text);
@@ -286,18 +286,18 @@ export const read = (address) => batch(() => {
 
 /** Keep the address and the page's state the same. The address that was opened is read first. */
 export function followHistory() {
-  let known = "";
+  let lastAddress = "";
   // At once, so that what follows from it is written over this entry of the history, and not to a new one.
   const readAddress = () => batch(() => {
     read(location);
-    known = entry();
+    lastAddress = entry();
   });
   readAddress();
   addEventListener("popstate", readAddress);
   effect(() => {
     const [address, now] = [write(), entry()];
-    const isOther = now !== known;
-    known = now;
+    const isOther = now !== lastAddress;
+    lastAddress = now;
     if (address === `${location.search}${location.hash}`) return;
     history[isOther ? "pushState" : "replaceState"](history.state, "", `${location.pathname}${address}`);
   });

@@ -23,10 +23,10 @@ export function storedText(key, byDefault) {
       return null;
     }
   };
-  const text = signal(attempt((kept) => kept.getItem(`hexapods:${key}`)) ?? byDefault);
+  const text = signal(attempt((storage) => storage.getItem(`hexapods:${key}`)) ?? byDefault);
   effect(() => {
     const { value } = text;
-    attempt((kept) => kept.setItem(`hexapods:${key}`, value));
+    attempt((storage) => storage.setItem(`hexapods:${key}`, value));
   });
   return text;
 }
@@ -56,17 +56,17 @@ export const isWide = mediaSignal("(min-width: 1700px)");
 
 const systemIsDark = mediaSignal("(prefers-color-scheme: dark)");
 const THEMES = ["auto", "light", "dark"];
-const kept = storedText("theme", "auto");
+const storedTheme = storedText("theme", "auto");
 
 /** The choice: "auto", "light" or "dark". */
-export const theme = computed(() => (THEMES.includes(kept.value) ? kept.value : "auto"));
+export const theme = computed(() => (THEMES.includes(storedTheme.value) ? storedTheme.value : "auto"));
 
 /** The theme that is shown: "light" or "dark". */
 export const shownTheme = computed(() =>
   theme.value === "auto" ? (systemIsDark.value ? "dark" : "light") : theme.value,
 );
 
-export const nextTheme = () => (kept.value = THEMES[(THEMES.indexOf(theme.value) + 1) % THEMES.length]);
+export const nextTheme = () => (storedTheme.value = THEMES[(THEMES.indexOf(theme.value) + 1) % THEMES.length]);
 
 export function followTheme() {
   effect(() => {

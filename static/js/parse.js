@@ -34,12 +34,12 @@ const GROUPED_BY_POINTS = /^[+-]?[1-9]\d{0,2}(\.\d{3})+$/;
 function readingsOf(text, isWhole) {
   const signed = text.trim().replace(/^[\u2212\u2013]/, "-");
   const plain = GROUPED_BY_SPACES.test(signed) ? signed.replace(/[ \u00a0\u2009\u202f]/g, "") : signed;
-  const found = [];
-  if (WITH_POINT.test(plain)) found.push(plain);
-  if (WITH_DECIMAL_COMMA.test(plain)) found.push(plain.replace(",", "."));
-  if (GROUPED_BY_COMMAS.test(plain)) found.push(plain.replaceAll(",", ""));
-  if (isWhole && GROUPED_BY_POINTS.test(plain)) found.push(plain.replaceAll(".", ""));
-  return [...new Set(found.map(Number))];
+  const readings = [];
+  if (WITH_POINT.test(plain)) readings.push(plain);
+  if (WITH_DECIMAL_COMMA.test(plain)) readings.push(plain.replace(",", "."));
+  if (GROUPED_BY_COMMAS.test(plain)) readings.push(plain.replaceAll(",", ""));
+  if (isWhole && GROUPED_BY_POINTS.test(plain)) readings.push(plain.replaceAll(".", ""));
+  return [...new Set(readings.map(Number))];
 }
 
 /** @type {(text: string, limits: Limits, isWhole: boolean) => number[]} */
@@ -86,17 +86,17 @@ function divisionsOf(text) {
  */
 function listReadings(divisions, readingsOfEntry) {
   /** @type {Map<string, Value[]>} */
-  const found = new Map();
+  const byFirst = new Map();
   for (const entries of divisions) {
     const readings = entries.map((entry) => readingsOfEntry(entry.trim()));
     if (readings.every((valid) => valid.length > 0)) {
       // Of entries with several meanings, two lists are enough to tell that the list has several.
       for (const list of [readings.map((valid) => valid[0]), readings.map((valid) => valid[valid.length - 1])]) {
-        found.set(list.join(";"), list);
+        byFirst.set(list.join(";"), list);
       }
     }
   }
-  return [...found.values()];
+  return [...byFirst.values()];
 }
 
 /** @param {unknown[]} list */
@@ -124,8 +124,8 @@ function theOnlyOne(text, lists) {
  */
 export function parseNumbers(text, limits, isWhole) {
   const divisions = divisionsOf(text);
-  const found = theOnlyOne(text, listReadings(divisions, (entry) => validReadings(entry, limits, isWhole)));
-  if (found) return found;
+  const reading = theOnlyOne(text, listReadings(divisions, (entry) => validReadings(entry, limits, isWhole)));
+  if (reading) return reading;
   const range = rangeOf(limits);
   const numbers = divisions[0].map((entry) => readingsOf(entry, isWhole)[0] ?? NaN);
   if (!numbers.every(Number.isFinite)) {
@@ -242,9 +242,9 @@ export function makeTexts(ofForm) {
 
   /** Replace the texts of fields; none leaves a field at its default. @param {Record<string, string[]>} changes */
   const set = (changes) => {
-    const kept = [...ofForm().peek()].filter(([field]) => !(field in changes));
+    const remaining = [...ofForm().peek()].filter(([field]) => !(field in changes));
     const added = Object.entries(changes).flatMap(([field, texts]) => texts.map((text) => [field, text]));
-    ofForm().value = new URLSearchParams([...kept, ...added]);
+    ofForm().value = new URLSearchParams([...remaining, ...added]);
   };
 
   return {
@@ -259,8 +259,8 @@ export function makeTexts(ofForm) {
      * @returns {Value}
      */
     valueOf(field, parse, byDefault) {
-      const given = ofForm().value.get(field);
-      for (const text of given === null ? [] : [given, lastValid(field, given)]) {
+      const typed = ofForm().value.get(field);
+      for (const text of typed === null ? [] : [typed, lastValid(field, typed)]) {
         const { value, mistake } = text === null ? { mistake: "" } : parse(text);
         if (mistake === undefined) return value;
       }
@@ -269,8 +269,8 @@ export function makeTexts(ofForm) {
 
     /** Keep a text that is not valid; the field keeps its value. @type {(field: string, text: string) => void} */
     keep: (field, text) => batch(() => {
-      const given = ofForm().peek().get(field);
-      before.value = { ...before.peek(), [field]: [text, lastValid(field, given) ?? given] };
+      const typed = ofForm().peek().get(field);
+      before.value = { ...before.peek(), [field]: [text, lastValid(field, typed) ?? typed] };
       set({ [field]: [text] });
     }),
   };

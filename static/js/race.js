@@ -25,8 +25,8 @@ const newest = signal(null);
 /** The timeline of the race in view, null while it is not known. */
 export const timeline = computed(() => {
   const race = raceInView.value;
-  const known = newest.value;
-  return race && known?.id === race.id && known.clock === clock.value ? known : null;
+  const raceTimeline = newest.value;
+  return race && raceTimeline?.id === race.id && raceTimeline.clock === clock.value ? raceTimeline : null;
 });
 
 /** The error of the last request, which was for a race and a clock. @type {Signal<[string, RequestError] | null>} */

@@ -94,7 +94,7 @@ export const closeReplay = () => batch(() => {
 /** Load the run that the page's state names, if any, in place of the one before. @param {number} time_s */
 async function load(time_s) {
   opening += 1;
-  const own = opening;
+  const attemptNow = opening;
   const [id, ghost, timedBy] = [page.run.peek(), page.ghost.peek(), clock.peek()];
   if (scene && id === null) draw([removal(scene)]);
   forget();
@@ -102,27 +102,27 @@ async function load(time_s) {
   if (id === null) return;
   try {
     const [answer, start] = await Promise.all([getReplay(id, timedBy, ghost), request("scene")]);
-    if (own !== opening) return;
+    if (attemptNow !== opening) return;
     scene = new SceneState(start);
     plan.value = answer;
     redraw();
     seekReplay(time_s);
   } catch (error) {
-    retryAfter(error, own, () => load(time_s));
+    retryAfter(error, attemptNow, () => load(time_s));
   }
 }
 
 /**
  * Tell an error that will be the same the next time, else try again after a while.
  * @param {unknown} error
- * @param {number} own the opening that the request belongs to
+ * @param {number} attemptOfThis the opening that the request belongs to
  * @param {() => unknown} again
  */
-function retryAfter(error, own, again) {
-  if (own !== opening) return;
+function retryAfter(error, attemptOfThis, again) {
+  if (attemptOfThis !== opening) return;
   const refused = /** @type {RequestError} */ (error);
   if (isLasting(refused)) replayProblem.value = refused.message;
-  else setTimeout(() => own === opening && again(), RETRY_MS);
+  else setTimeout(() => attemptOfThis === opening && again(), RETRY_MS);
 }
 
 /** End the replay of a run that was deleted. Of one that was never loaded, what the server says stands. */
@@ -207,9 +207,9 @@ let clockChoice = 0;
  */
 export async function setReplayClock(name) {
   clockChoice += 1;
-  const [own, choice, id, ghost] = [opening, clockChoice, page.run.peek(), page.ghost.peek()];
+  const [attemptNow, choice, id, ghost] = [opening, clockChoice, page.run.peek(), page.ghost.peek()];
   if (!plan.peek() || !id || name === clock.peek()) return;
-  const isObeyed = () => own === opening && choice === clockChoice;
+  const isObeyed = () => attemptNow === opening && choice === clockChoice;
   try {
     const after = await getReplay(id, name, ghost);
     if (!isObeyed()) return;
@@ -250,16 +250,16 @@ let lastTick = null;
 export function tick(now) {
   const elapsed_s = lastTick === null ? 0 : Math.min((now - lastTick) / 1000, LONGEST_TICK_S);
   lastTick = now;
-  const known = plan.peek();
-  if (!known || !scene || replayProblem.peek() !== null) return;
+  const replayPlan = plan.peek();
+  if (!replayPlan || !scene || replayProblem.peek() !== null) return;
   if (playing.peek() && !hasEnded.peek() && !isBuffering.peek()) {
-    const next = inRecording(known.recorded_s, replayTime.peek() + elapsed_s * speed.peek());
+    const next = inRecording(replayPlan.recorded_s, replayTime.peek() + elapsed_s * speed.peek());
     replayTime.value = Math.min(next, endTime.peek());
   }
-  if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
+  if (playing.peek() && !hasEnded.peek()) playFrame(replayPlan, now, elapsed_s);
   else showMoment(now);
   const isNearEnd = endTime.peek() - replayTime.peek() <= speed.peek() * GROWTH_MS / 1000;
-  if (!known.complete && isNearEnd) grow(now);
+  if (!replayPlan.complete && isNearEnd) grow(now);
   if (shown.frame && shown.view !== page.camera.peek()) {
     draw([follower.centring(scene, shown.frame, page.camera.peek(), Infinity)]);
     shown = { ...shown, view: page.camera.peek() };
@@ -267,8 +267,8 @@ export function tick(now) {
 }
 
 /** Show the frame at the position, of a segment at the level that fits the speed. */
-function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
-  const { address, next, index: wanted } = placeOf(known, speed.peek(), replayTime.peek());
+function playFrame(/** @type {ReplayPlan} */ replayPlan, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
+  const { address, next, index: wanted } = placeOf(replayPlan, speed.peek(), replayTime.peek());
   const loaded = segmentAt(address);
   if (!loaded) {
     isBuffering.value = true;
@@ -277,7 +277,7 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   }
   const index = Math.min(wanted, loaded.frames.length - 1);
   isBuffering.value = false;
-  if (next && index >= known.segment_frames / 2) segmentAt(next);
+  if (next && index >= replayPlan.segment_frames / 2) segmentAt(next);
   if (shown.address === address && shown.index === index) return;
   const state = /** @type {SceneState} */ (scene);
   const newest = loaded.frames[index];
@@ -297,14 +297,14 @@ async function grow(/** @type {number} */ now) {
   if (isGrowthPending || now - grewAt < GROWTH_MS) return;
   grewAt = now;
   isGrowthPending = true;
-  const own = opening;
+  const attemptNow = opening;
   try {
     const answer = await getReplay(/** @type {string} */ (page.run.peek()), clock.peek(), page.ghost.peek());
-    if (own !== opening) return;
+    if (attemptNow !== opening) return;
     isGrowthPending = false;
     plan.value = answer;
   } catch (error) {
-    retryAfter(error, own, () => (isGrowthPending = false));
+    retryAfter(error, attemptNow, () => (isGrowthPending = false));
   }
 }
 
@@ -313,14 +313,14 @@ async function showMoment(/** @type {number} */ now) {
   const time_s = replayTime.peek();
   if (isMomentPending || Math.abs(shown.time_s - time_s) < SAME_S) return;
   isMomentPending = true;
-  const own = opening;
+  const attemptNow = opening;
   try {
     const { frames: [frame] } = await request("moment", { time_s: String(time_s), clock: clock.peek() });
-    if (own !== opening || !scene) return;
+    if (attemptNow !== opening || !scene) return;
     isMomentPending = false;
     drawMoment(scene, frame, time_s, now);
   } catch (error) {
-    retryAfter(error, own, () => (isMomentPending = false));
+    retryAfter(error, attemptNow, () => (isMomentPending = false));
   }
 }
 
@@ -341,8 +341,8 @@ function drawMoment(state, frame, time_s, now) {
 function tell(frame, now) {
   if (!frame.scene || now - sceneSentAt < 1000 / SCENES_PER_S) return;
   sceneSentAt = now;
-  const told = /** @type {Scene} */ (frame.scene);
-  ownScene.value = { ...told, time_s: replayTime.peek(), shown_speed: speed.peek() };
+  const sceneOfFrame = /** @type {Scene} */ (frame.scene);
+  ownScene.value = { ...sceneOfFrame, time_s: replayTime.peek(), shown_speed: speed.peek() };
 }
 
 // ---- the page's stage
@@ -389,9 +389,9 @@ export function followReplay() {
   });
   // A link, or "back", names another run or another moment.
   effect(() => {
-    const [isOther, held] = [named() !== opened, page.moment.value];
-    if (isOther) untracked(() => batch(() => load(held ?? 0)));
-    else if (held !== null && held !== replayTime.peek()) seekReplay(held);
+    const [isOther, moment] = [named() !== opened, page.moment.value];
+    if (isOther) untracked(() => batch(() => load(moment ?? 0)));
+    else if (moment !== null && moment !== replayTime.peek()) seekReplay(moment);
   });
 }
 

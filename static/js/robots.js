@@ -33,17 +33,17 @@ export const formRobot = (robot) => (differences(robot).length ? robot : presetO
  * @param {Robot[]} presets
  */
 export function builtPart(robot, part, presets) {
-  const [, own = null] = differences(robot).find(([field]) => field === part) ?? [];
+  const [, value = null] = differences(robot).find(([field]) => field === part) ?? [];
   const preset = presets.find(({ name }) => name === presetOf(robot));
-  return typeof own === "number" ? own : preset?.built[part] ?? null;
+  return typeof value === "number" ? value : preset?.built[part] ?? null;
 }
 
 /** JSON in which the order of an object's fields plays no part. @type {(value: unknown) => string} */
 export const canonical = (value) =>
-  JSON.stringify(value, (_key, part) =>
-    part && typeof part === "object" && !Array.isArray(part)
-      ? Object.fromEntries(Object.entries(part).sort(([a], [b]) => a.localeCompare(b)))
-      : part) ?? "";
+  JSON.stringify(value, (_key, item) =>
+    item && typeof item === "object" && !Array.isArray(item)
+      ? Object.fromEntries(Object.entries(item).sort(([a], [b]) => a.localeCompare(b)))
+      : item) ?? "";
 
 /** @type {(one: unknown, other: unknown) => boolean} */
 export const isSame = (first, other) => canonical(first) === canonical(other);
@@ -190,11 +190,13 @@ export function kindFor(name, robot, leg = 1) {
   if (!kind || !joints || !chosenIn.length) return kind;
   const names = Object.keys(joints);
   /** @type {(own: string, field: FieldOption) => FieldOption} */
-  const fitted = (own, field) => {
-    if (chosenIn.includes(own)) return { ...field, choices: names, choice_titles: names, valid: names.join(", or ") };
+  const fitted = (preset, field) => {
+    if (chosenIn.includes(preset)) {
+      return { ...field, choices: names, choice_titles: names, valid: names.join(", or ") };
+    }
     return field.ranges ? { ...field, ranges: { ...field.ranges, ranges: joints } } : field;
   };
-  const fields = Object.entries(kind.fields).map(([own, field]) => [own, fitted(own, field)]);
+  const fields = Object.entries(kind.fields).map(([name_, field]) => [name_, fitted(name_, field)]);
   return { ...kind, fields: Object.fromEntries(fields) };
 }
 

@@ -44,19 +44,19 @@ export const COLUMNS = {
 };
 const BY_DEFAULT = ["distance", "created"];
 
-const kept = storedText("columns", BY_DEFAULT.join(","));
+const storedColumns = storedText("columns", BY_DEFAULT.join(","));
 
 /** The names of the columns that are shown: as the link says, or as this browser has kept them. */
 export const shownColumns = computed(() => {
-  const names = page.columns.value ?? kept.value.split(",");
+  const names = page.columns.value ?? storedColumns.value.split(",");
   return Object.keys(COLUMNS).filter((name) => names.includes(name));
 });
 
 /** Show a column, or no longer; this browser keeps that. @param {string} name */
 export function toggleColumn(name) {
   const shown = shownColumns.peek();
-  const others = shown.filter((column) => column !== name);
-  const chosen = others.length < shown.length ? others : [...shown, name];
-  kept.value = chosen.join(",");
+  const remaining = shown.filter((column) => column !== name);
+  const chosen = remaining.length < shown.length ? remaining : [...shown, name];
+  storedColumns.value = chosen.join(",");
   page.columns.value = chosen;
 }

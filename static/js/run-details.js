@@ -65,12 +65,12 @@ export function followDetails() {
  */
 export function bestPointOf(run) {
   const { points } = curveOf(run);
-  const [first, ...others] = points.slice(1);
-  return first ? others.reduce((best, point) => (point.distance_m > best.distance_m ? point : best), first) : null;
+  const [first, ...later] = points.slice(1);
+  return first ? later.reduce((best, point) => (point.distance_m > best.distance_m ? point : best), first) : null;
 }
 
 /** Greedy's distance, where it is the same for all trainings [m]; else null. @param {Run[]} trainings */
 export function commonGreedy(trainings) {
-  const [first = null, ...others] = trainings.map(greedyOf);
-  return others.every((greedy) => greedy === first) ? first : null;
+  const [first = null, ...later] = trainings.map(greedyOf);
+  return later.every((greedy) => greedy === first) ? first : null;
 }

@@ -23,8 +23,8 @@ const groupOf = (key, title, runs, facts = []) =>
   ({ key, title, facts, isSweep: false, rows: runs.map((run) => aloneRow(run, facts)) });
 
 /** @type {(run: AnyRun, told: string[]) => Row} */
-const aloneRow = (run, told) => ({
-  run, name: titleOf(run), facts: "damaged" in run ? [] : factsOf(run).filter((fact) => !told.includes(fact)),
+const aloneRow = (run, facts) => ({
+  run, name: titleOf(run), facts: "damaged" in run ? [] : factsOf(run).filter((fact) => !facts.includes(fact)),
 });
 
 /**
@@ -74,8 +74,8 @@ function isSweep({ varied, members }) {
  */
 function sweepsOver(known, all, varied) {
   const fixed = all.filter((name) => !varied.includes(name));
-  const found = groupedBy(known, (entry) => fixed.map((name) => keyOf(entry, name)).join("\n"));
-  return [...found.values()].map((members) => ({ varied, members })).filter(isSweep);
+  const groups = groupedBy(known, (entry) => fixed.map((name) => keyOf(entry, name)).join("\n"));
+  return [...groups.values()].map((members) => ({ varied, members })).filter(isSweep);
 }
 
 /** A sweep of these tells least: it comes after others of the same size. */
@@ -94,12 +94,12 @@ const byWorth = (a, b) =>
  * @param {Run[]} runs
  */
 export function sweepsOf(runs) {
-  const known = runs.map((run) => ({ run, fields: fieldsOf(run) }));
-  const all = variedIn(known.map(({ fields }) => fields));
-  const single = all.flatMap((name) => sweepsOver(known, all, [name]));
+  const entries = runs.map((run) => ({ run, fields: fieldsOf(run) }));
+  const all = variedIn(entries.map(({ fields }) => fields));
+  const single = all.flatMap((name) => sweepsOver(entries, all, [name]));
   const names = [...new Set(single.flatMap(({ varied }) => varied))];
   const pairs = names.flatMap((name, at) => names.slice(at + 1).map((other) => [name, other]));
-  const waiting = [...single, ...pairs.flatMap((pair) => sweepsOver(known, all, pair))];
+  const waiting = [...single, ...pairs.flatMap((pair) => sweepsOver(entries, all, pair))];
   const taken = new Set();
   /** @type {Sweep[]} */
   const chosen = [];
@@ -158,22 +158,22 @@ function bySweep(runs, isByValue) {
  */
 function inOrder(runs, groupFor) {
   /** @type {Set<Group>} */
-  const found = new Set();
+  const seen = new Set();
   /** @type {AnyRun[] | null} */
   let alone = null;
   /** @type {(Group | AnyRun[])[]} */
   const parts = [];
   for (const run of runs) {
     const group = groupFor(run);
-    if (group && found.has(group)) continue;
+    if (group && seen.has(group)) continue;
     if (group) {
-      found.add(group);
+      seen.add(group);
       parts.push(group);
       alone = null;
     } else if (alone) alone.push(run);
     else parts.push((alone = [run]));
   }
-  return parts.map((part) => (Array.isArray(part) ? groupOf(`alone ${part[0].id}`, onItsOwn(part), part) : part));
+  return parts.map((piece) => (Array.isArray(piece) ? groupOf(`alone ${piece[0].id}`, onItsOwn(piece), piece) : piece));
 }
 
 /** @param {AnyRun[]} runs */
@@ -211,15 +211,15 @@ function byRace(runs, everyRun) {
   }
   /** @type {Map<string, Group>} */
   const groups = new Map();
-  const own = new Map(runs.map((run) => [run.id, raceOf(run, races)]));
-  for (const race of new Set([...own.values()].filter((item) => item !== null))) {
-    const members = runs.filter((run) => own.get(run.id) === race);
+  const raceOfRun = new Map(runs.map((run) => [run.id, raceOf(run, races)]));
+  for (const race of new Set([...raceOfRun.values()].filter((item) => item !== null))) {
+    const members = runs.filter((run) => raceOfRun.get(run.id) === race);
     const inside = [...members.filter(({ kind }) => kind === "race"), ...members.filter(({ kind }) => kind !== "race")];
     const group = groupOf(`race ${race.id}`, titleOf(race), inside, factsOf(race));
     const rows = group.rows.map((row) => (row.run.id === race.id ? { ...row, name: "The race" } : row));
     groups.set(race.id, { ...group, rows });
   }
-  return inOrder(runs, (run) => groups.get(own.get(run.id)?.id ?? "") ?? null);
+  return inOrder(runs, (run) => groups.get(raceOfRun.get(run.id)?.id ?? "") ?? null);
 }
 
 // ---- by day
@@ -240,7 +240,7 @@ function dayOf(time, now) {
 /** @type {(runs: AnyRun[], now: number) => Group[]} */
 const byDay = (runs, now) =>
   [...groupedBy(runs, ({ created_at }) => dayOf(created_at ?? null, now))]
-    .map(([day, own]) => groupOf(`day ${folded(day)}`, day, own));
+    .map(([day, runsOfDay]) => groupOf(`day ${folded(day)}`, day, runsOfDay));
 
 /** The ways to group, and their titles. */
 export const GROUPING_TITLES = { sweep: "By sweep", race: "By race", day: "By day", none: "No groups" };

@@ -13,8 +13,8 @@ import { damagedRuns } from "./store.js";
 
 /** Those of the address, `#runs?kind=race&tag=ice&sort=name`; the others are empty. @type {ReadonlySignal<Filters>} */
 export const filters = computed(() => {
-  const given = Object.keys(NO_FILTERS).map((name) => [name, page.list.value.get(name)]).filter(([, value]) => value);
-  return { ...NO_FILTERS, ...Object.fromEntries(given) };
+  const set = Object.keys(NO_FILTERS).map((name) => [name, page.list.value.get(name)]).filter(([, value]) => value);
+  return { ...NO_FILTERS, ...Object.fromEntries(set) };
 });
 export const isFiltered = computed(() => {
   const { sort: _, ...chosen } = filters.value;
@@ -83,10 +83,10 @@ export const listedRuns = computed(() => runGroups.value.flatMap(({ rows }) => r
 /** The tags of the known runs, the most frequent first. */
 export const knownTags = computed(() => {
   /** @type {Map<string, { tag: string, count: number }>} */
-  const found = new Map();
+  const counts = new Map();
   for (const tag of everyRun.value.flatMap(({ tags = [] }) => tags)) {
-    const count = (found.get(folded(tag))?.count ?? 0) + 1;
-    found.set(folded(tag), { tag, count });
+    const count = (counts.get(folded(tag))?.count ?? 0) + 1;
+    counts.set(folded(tag), { tag, count });
   }
-  return [...found.values()].sort((a, b) => b.count - a.count).map(({ tag }) => tag);
+  return [...counts.values()].sort((a, b) => b.count - a.count).map(({ tag }) => tag);
 });

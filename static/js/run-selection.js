@@ -52,10 +52,10 @@ export const deleteSelected = () =>
     const all = deletable.value.map(({ id }) => id);
     const [, most] = served().limits.run_ids;
     for (let at = 0; at < all.length; at += most ?? all.length) {
-      const { deleted, kept } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
+      const { deleted, kept: refused } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
       deleted.forEach(markGone);
       select([...ids.value].filter((id) => !deleted.includes(id)));
-      reasons.push(...kept.map(({ reason }) => reason));
+      reasons.push(...refused.map(({ reason }) => reason));
     }
     if (reasons.length) throw new api.RequestError(`Not deleted: ${listed(reasons)}.`);
   });

@@ -46,7 +46,7 @@ function ofPractice(run) {
   const { config } = run;
   const { training } = served().defaults;
   const declared = agentOf(config.agent).settings;
-  const own = Object.entries(config.settings ?? {})
+  const settings = Object.entries(config.settings ?? {})
     .map(([name, value]) => [name, unlessDefault(value, declared[name]?.default)]);
   return {
     agent: always(config.agent),
@@ -56,21 +56,22 @@ function ofPractice(run) {
     steps_per_episode: unlessDefault(config.steps_per_episode, training.steps_per_episode),
     before: unlessDefault(config.continue_from ?? null, null),
     changes: unlessDefault(changesInWords(config.agent, rateChanges(run)), []),
-    ...Object.fromEntries(own),
+    ...Object.fromEntries(settings),
   };
 }
 
 /** A race with one learner has the fields of its practice, too. @param {Run} run @returns {Fields} */
 function ofRace(run) {
   const { lanes, steps, seed, branch_from: branch = null } = run.config;
-  const [practice, ...others] = trainingIds(run).map(runOf).filter((training) => training !== null).map(ofPractice);
-  const isOne = practice && others.length === 0;
+  const trainings = trainingIds(run).map(runOf).filter((training) => training !== null);
+  const [practice, ...morePractices] = trainings.map(ofPractice);
+  const isOne = practice && morePractices.length === 0;
   // Its learner is one of the lanes.
-  const { seed: practice_seed, agent, ...own } = isOne ? practice : /** @type {Partial<Fields>} */ ({});
+  const { seed: practice_seed, agent, ...practiceFields } = isOne ? practice : /** @type {Partial<Fields>} */ ({});
   return {
-    ...own,
+    ...practiceFields,
     ...(agent && practice_seed ? { agent: { ...agent, key: "" }, practice_seed } : {}),
-    ...(others.length ? { practices: always([practice, ...others].map(canonical)) } : {}),
+    ...(morePractices.length ? { practices: always([practice, ...morePractices].map(canonical)) } : {}),
     lanes: always((lanes ?? []).map(laneTitle)),
     race_steps: unlessDefault(steps, served().defaults.race.steps),
     seed: unlessDefault(seed, served().defaults.race.seed),
@@ -82,9 +83,9 @@ function ofRace(run) {
 export function fieldsOf(run) {
   /** @type {Fields} */
   const all = { ...(run.kind === "race" ? ofRace(run) : ofPractice(run)), ...ofWalk(run) };
-  const own = Object.keys(all).filter((name) => !ORDER.includes(name));
+  const further = Object.keys(all).filter((name) => !ORDER.includes(name));
   const [first, last] = [ORDER.slice(0, FIRST), ORDER.slice(FIRST)];
-  const names = [...first, ...own, ...last].filter((name) => name in all);
+  const names = [...first, ...further, ...last].filter((name) => name in all);
   return /** @type {Fields} */ (Object.fromEntries(names.map((name) => [name, all[name]])));
 }
 
@@ -109,8 +110,8 @@ export function variedIn(all) {
 
 /** A world by its name if it has one, else by what happens. @param {Disturbance[]} disturbances */
 function worldInWords(disturbances) {
-  const known = served().worlds.find((world) => canonical(world.disturbances) === canonical(disturbances));
-  return known?.title ?? sentence(joinedBySteps(disturbances).map(inTime).join("; "));
+  const named = served().worlds.find((world) => canonical(world.disturbances) === canonical(disturbances));
+  return named?.title ?? sentence(joinedBySteps(disturbances).map(inTime).join("; "));
 }
 
 /** @type {Record<string, (value: any) => string>} */

@@ -15,7 +15,7 @@ const RETRY_MS = 3000;
 /** Run id → the points that were requested. @type {Signal<Record<string, Point[]>>} */
 const requested = signal({});
 /** Ids that were asked for since the connection began. @type {Set<string>} */
-const asked = new Set();
+const requestedIds = new Set();
 
 /**
  * The points of a training's curve: those that were requested, and the evaluations since.
@@ -23,10 +23,10 @@ const asked = new Set();
  * @returns {Point[]}
  */
 export function pointsOf(id) {
-  const known = requested.value[id] ?? [];
-  const last = known.at(-1)?.[0] ?? 0;
+  const points = requested.value[id] ?? [];
+  const last = points.at(-1)?.[0] ?? 0;
   const since = (evaluations.value[id] ?? []).filter(({ step }) => step > last);
-  return [...known, ...since.map(({ step, distance_m }) => /** @type {Point} */ ([step, distance_m]))];
+  return [...points, ...since.map(({ step, distance_m }) => /** @type {Point} */ ([step, distance_m]))];
 }
 
 /** @param {string[]} ids @throws {RequestError} */
@@ -42,20 +42,20 @@ async function load(ids) {
 /** Request the curves of the trainings that are listed, as many at once as the server answers. */
 export function followThumbnails() {
   effect(() => {
-    if (connection.value !== "live") asked.clear();
+    if (connection.value !== "live") requestedIds.clear();
     else if (page.view.value === "runs") request();
   });
 }
 
 function request() {
   const ids = shownRuns.value.filter(({ kind }) => kind === "training").map(({ id }) => id);
-  const missing = ids.filter((id) => !asked.has(id)).slice(0, served().limits.run_ids[1] ?? undefined);
+  const missing = ids.filter((id) => !requestedIds.has(id)).slice(0, served().limits.run_ids[1] ?? undefined);
   if (missing.length === 0) return;
-  missing.forEach((id) => asked.add(id));
+  missing.forEach((id) => requestedIds.add(id));
   load(missing).then(request, (/** @type {RequestError} */ error) => {
     if (isLasting(error)) return;
     setTimeout(() => {
-      missing.forEach((id) => asked.delete(id));
+      missing.forEach((id) => requestedIds.delete(id));
       if (connection.peek() === "live" && page.view.peek() === "runs") request();
     }, RETRY_MS);
   });

@@ -49,8 +49,8 @@ export const greedyOf = ({ id, kind, greedy_distance_m, result }) =>
 
 /** Share of greedy's distance on the same robot; null where either is not known. @param {Run} run */
 export function shareOf(run) {
-  const [own, greedy] = [distanceOf(run), greedyOf(run)];
-  return run.kind === "training" && own !== null && greedy ? percentage(own / greedy) : null;
+  const [distance, greedy] = [distanceOf(run), greedyOf(run)];
+  return run.kind === "training" && distance !== null && greedy ? percentage(distance / greedy) : null;
 }
 
 /** The lanes of a race at time-out under the paper clock, the first before the others. @param {Run} run */

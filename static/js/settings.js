@@ -192,7 +192,7 @@ export function laneSettings(names) {
     const observation = settingOf("observation");
     return Object.entries(learns(name) ? { keep_learning: keepLearning } : { ...settings, ...ofSearch, observation });
   };
-  return Object.fromEntries(names.flatMap((name) => ofLane(name).map(([own, setting]) => [`${name}.${own}`, setting])));
+  return Object.fromEntries(names.flatMap((name) => ofLane(name).map(([key, setting]) => [`${name}.${key}`, setting])));
 }
 
 /**
@@ -202,11 +202,11 @@ export function laneSettings(names) {
  */
 export function laneTitle(lane) {
   const { title, settings, learns: isLearner, keeps_learning } = agentOf(lane.agent);
-  const own = lane.settings ?? {};
-  const told = Object.entries(settings).filter(
-    ([name, setting]) => name in own && (!isLearner || own[name] !== setting.default),
+  const values = lane.settings ?? {};
+  const differing = Object.entries(settings).filter(
+    ([name, setting]) => name in values && (!isLearner || values[name] !== setting.default),
   );
-  const words = told.map(([name, setting]) => settingInWords(setting, own[name]));
+  const words = differing.map(([name, setting]) => settingInWords(setting, values[name]));
   if ((lane.keep_learning ?? keeps_learning) !== keeps_learning) {
     words.push(lane.keep_learning ? "keeps learning" : "frozen");
   }
@@ -238,13 +238,13 @@ const namesOfSymbol = (symbol, entries) =>
  */
 export function mainSettings(agent) {
   const { settings, live_settings } = agentOf(agent);
-  const own = Object.entries(settings);
+  const entries = Object.entries(settings);
   const liveOnly = Object.entries(live_settings).filter(([name]) => !(name in settings));
-  return own.flatMap(([name, setting], number) => {
+  return entries.flatMap(([name, setting], number) => {
     /** @type {(live: string | null, end: string | null) => MainSetting[]} */
     const main = (live, end) => [{ name, setting, live, end }];
     if (name in live_settings) return main(name, null);
-    const [first, end = null] = namesOfSymbol(setting.symbol, own);
+    const [first, end = null] = namesOfSymbol(setting.symbol, entries);
     const [live = null] = namesOfSymbol(setting.symbol, liveOnly);
     if (live !== null && first === name) return main(live, end);
     return number === 0 ? main(null, null) : [];

@@ -10,8 +10,8 @@ import { runs } from "./store.js";
 const version = computed(() => {
   const run = shownRun.value;
   if (!run || !isWalk(run)) return null;
-  const known = [run, ...trainingIds(run).flatMap((id) => runs.value.get(id) ?? [])];
-  return known.map(({ id, changes }) => `${id} ${changes?.length ?? 0}`).join();
+  const shownRuns = [run, ...trainingIds(run).flatMap((id) => runs.value.get(id) ?? [])];
+  return shownRuns.map(({ id, changes }) => `${id} ${changes?.length ?? 0}`).join();
 });
 
 let isFollowing = false;

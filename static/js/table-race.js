@@ -41,9 +41,9 @@ const differing = (list, runs) => list.filter(([, value]) => runs.some((run) => 
  * @param {LaneConfig} lane
  */
 function asStarted({ agent, training_id = null, settings, observation, keep_learning, ...lane }) {
-  const own = training_id === null ? { settings } : { training_id };
+  const learned = training_id === null ? { settings } : { training_id };
   const model = lane.plans_with && !lane.plans_with_by_default ? { plans_with: lane.plans_with } : {};
-  return { agent, ...own, observation, keep_learning, ...model };
+  return { agent, ...learned, observation, keep_learning, ...model };
 }
 
 /** The lanes of a race of these runs, each once. @param {Run[]} runs */

@@ -48,9 +48,10 @@ function ofPractice(run, isComputing) {
   const { steps } = run.config;
   const unit_s = duration_s / steps;
   // Of one that has ended there is what is recorded: a crash loses the last of the steps that were done.
-  const made = isComputing ? run.progress.done : Math.round(computed_s / unit_s);
-  const end = isComputing ? steps : Math.max(made, 1);
-  return { unit: "step", unit_s, end, picture: Math.min(time_s() / unit_s, made), computed: made, isComputing };
+  const stepsMade = isComputing ? run.progress.done : Math.round(computed_s / unit_s);
+  const end = isComputing ? steps : Math.max(stepsMade, 1);
+  const picture = Math.min(time_s() / unit_s, stepsMade);
+  return { unit: "step", unit_s, end, picture, computed: stepsMade, isComputing };
 }
 
 /** @param {boolean} isComputing @returns {Scale | null} */
@@ -77,17 +78,19 @@ export const positionInWords = ({ unit }, at) =>
 /** What has happened in the run on stage as far as it is computed, in order. @type {ReadonlySignal<Mark[]>} */
 export const marks = computed(() => {
   const run = shownRun.value;
-  const known = scale.value;
-  if (!run || !known) return [];
+  const scaleNow = scale.value;
+  if (!run || !scaleNow) return [];
   const all = run.kind === "training" ? marksOfPractice(run) : marksOfRace(run);
-  return all.filter(({ at }) => at <= Math.min(known.computed, known.end) + SAME_MOMENT_S).sort((a, b) => a.at - b.at);
+  const last = Math.min(scaleNow.computed, scaleNow.end) + SAME_MOMENT_S;
+  return all.filter(({ at }) => at <= last).sort((a, b) => a.at - b.at);
 });
 
 /** @param {Run} run @returns {Mark[]} */
 function marksOfPractice(run) {
-  const known = curve.value?.run.id === run.id ? curve.value : null;
-  const evaluations = (known?.points ?? []).filter(({ step }) => step > (known?.from ?? 0)).map((point) => ({
-    kind: "evaluation", at: point.step - (known?.from ?? 0), isMinor: true, text: `test: ${metres(point.distance_m)}`,
+  const practice = curve.value?.run.id === run.id ? curve.value : null;
+  const evaluations = (practice?.points ?? []).filter(({ step }) => step > (practice?.from ?? 0)).map((point) => ({
+    kind: "evaluation", at: point.step - (practice?.from ?? 0), isMinor: true,
+    text: `test: ${metres(point.distance_m)}`,
   }));
   const changes = rateChanges(run).map((rateChange) => ({
     kind: "change", at: rateChange.step, text: rateInWords(run.config.agent, rateChange),
@@ -114,11 +117,11 @@ export function timeAtDistance({ points }, distance_m) {
 
 /** @param {Run} race @returns {Mark[]} */
 function marksOfRace(race) {
-  const known = timeline.value;
+  const raceTimeline = timeline.value;
   const { time_out_s = null } = raceScene.value ?? {};
   const timeOut = time_out_s === null ? [] : [{ kind: "time-out", at: time_out_s, text: "time-out" }];
-  const finish_m = known?.finish_line_m ?? 0;
-  const ofLanes = (known?.lanes ?? []).flatMap((track, lane) => marksOfLane(race, track, lane, finish_m));
+  const finish_m = raceTimeline?.finish_line_m ?? 0;
+  const ofLanes = (raceTimeline?.lanes ?? []).flatMap((track, lane) => marksOfLane(race, track, lane, finish_m));
   return [...timeOut, ...ofLanes];
 }
 
@@ -129,15 +132,17 @@ function marksOfLane(race, track, lane, finish_m) {
   const crossed = timeAtDistance(track, finish_m);
   const fell = race.result?.lanes[lane]?.fell_at_step ?? null;
   /** @type {Mark[]} */
-  const found = crossed === null ? [] : [{ kind: "crossing", at: crossed, lane, text: `${name} crosses the line` }];
+  const raceMarks = crossed === null
+    ? []
+    : [{ kind: "crossing", at: crossed, lane, text: `${name} crosses the line` }];
   if (fell !== null && ends?.[fell] !== undefined) {
-    found.push({ kind: "fall", at: ends[fell], lane, text: `${name} falls` });
+    raceMarks.push({ kind: "fall", at: ends[fell], lane, text: `${name} falls` });
   }
   for (const disturbance of disturbancesOf(race)) {
-    if (!disturbance.at_step || ends?.[disturbance.at_step] === undefined) continue;
-    found.push({ kind: "disturbance", at: ends[disturbance.at_step], lane, text: `${inWords(disturbance)}, ${name}` });
+    const at = disturbance.at_step ? ends?.[disturbance.at_step] : undefined;
+    if (at !== undefined) raceMarks.push({ kind: "disturbance", at, lane, text: `${inWords(disturbance)}, ${name}` });
   }
-  return found;
+  return raceMarks;
 }
 
 // ---- what a user can do with it
@@ -148,11 +153,11 @@ function marksOfLane(race, track, lane, finish_m) {
  * @param {{ isHeld?: boolean }} [how]
  */
 export function seekTo(at, { isHeld = false } = {}) {
-  const known = scale.peek();
+  const scaleNow = scale.peek();
   const run = shownRun.peek();
-  if (!known || !run || isStale.peek()) return;
+  if (!scaleNow || !run || isStale.peek()) return;
   lastPress.time_ms = -Infinity;
-  const to_s = known.unit_s * Math.min(Math.max(at, 0), known.computed);
+  const to_s = scaleNow.unit_s * Math.min(Math.max(at, 0), scaleNow.computed);
   if (canPlay.peek()) setStage(isHeld ? { time_s: to_s, playing: false } : { time_s: to_s });
   else openReplay(run.id, { time_s: to_s, clock: clock.peek(), isPlaying: !isHeld });
 }
@@ -178,12 +183,12 @@ const SLIDER_KEYS = {
 
 /** Move by a key of the time slider; false if it is none. @param {string} key */
 export function pressSlider(key) {
-  const [known, run, move] = [scale.peek(), shownRun.peek(), SLIDER_KEYS[key]];
+  const [scaleNow, run, move] = [scale.peek(), shownRun.peek(), SLIDER_KEYS[key]];
   if (!move) return false;
-  if (!known || !run || isStale.peek()) return true;
+  if (!scaleNow || !run || isStale.peek()) return true;
   const now_ms = performance.now();
   const goesOn = lastPress.id === run.id && now_ms - lastPress.time_ms < PRESS_MS;
-  const at = Math.min(Math.max(move(goesOn ? lastPress.at : known.picture, known), 0), known.computed);
+  const at = Math.min(Math.max(move(goesOn ? lastPress.at : scaleNow.picture, scaleNow), 0), scaleNow.computed);
   seekTo(at);
   lastPress = { id: run.id, at, time_ms: now_ms };
   return true;
@@ -191,13 +196,13 @@ export function pressSlider(key) {
 
 /** Go to the next thing that happened, or to the one before. @param {1 | -1} direction */
 export function seekToMark(direction) {
-  const known = scale.peek();
-  if (!known) return;
+  const scaleNow = scale.peek();
+  if (!scaleNow) return;
   const stops = marks.peek().filter(({ isMinor }) => !isMinor).map(({ at }) => at);
-  const margin = 0.002 * known.end;
+  const margin = 0.002 * scaleNow.end;
   const next = direction > 0
-    ? stops.find((at) => at > known.picture + margin)
-    : stops.findLast((at) => at < known.picture - margin);
+    ? stops.find((at) => at > scaleNow.picture + margin)
+    : stops.findLast((at) => at < scaleNow.picture - margin);
   if (next !== undefined) seekTo(next, { isHeld: true });
 }
 

@@ -80,15 +80,15 @@ const titleOfField = (field) => options.value?.titles[field];
  * @returns {string}
  */
 export function labelOf(field) {
-  const [agent, own] = field.split(".");
-  if (own) return `${agentOf(agent).title}: ${labelOf(own).toLowerCase()}`;
+  const [agent, settingName] = field.split(".");
+  if (settingName) return `${agentOf(agent).title}: ${labelOf(settingName).toLowerCase()}`;
   const setting = options.value?.settings[field];
   return setting ? titleOf(setting) : titleOfField(field) ?? field;
 }
 
 const ROBOT_PART = /\brobot\.([a-z_]+)/gi;
 /** @param {string} text */
-const withPartsInWords = (text) => text.replace(ROBOT_PART, (_, part) => `Robot, ${partInWords(part)[0]}`);
+const withPartsInWords = (text) => text.replace(ROBOT_PART, (_, name) => `Robot, ${partInWords(name)[0]}`);
 
 /**
  * A path of the API, such as `lanes.0.training.settings.alpha`, and what follows it where it is the subject of a

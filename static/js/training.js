@@ -33,13 +33,13 @@ const requestedReferences = signal({});
  */
 function chainOf(training) {
   /** @type {Run[]} */
-  const found = [];
+  const chain = [];
   let run = training;
-  while (run && found.length < LONGEST_CHAIN) {
-    found.unshift(run);
+  while (run && chain.length < LONGEST_CHAIN) {
+    chain.unshift(run);
     run = runs.value.get(run.config?.continue_from ?? "");
   }
-  return found;
+  return chain;
 }
 
 
@@ -73,15 +73,15 @@ export function curveOf(run, upTo = () => Infinity) {
   /** @type {Disturbance[]} */
   const disturbances = [];
   let from = 0;
-  for (const part of trainings) {
-    if (part !== trainings[0]) blocks.push(from);
-    const last = upTo(part);
-    const shown = evaluationsOf(part.id).filter(({ step }) => step <= last);
+  for (const training of trainings) {
+    if (training !== trainings[0]) blocks.push(from);
+    const last = upTo(training);
+    const shown = evaluationsOf(training.id).filter(({ step }) => step <= last);
     points.push(...shown.map((evaluation) => ({ ...evaluation, step: from + evaluation.step })));
-    changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + last));
-    const happened = disturbancesOf(part).filter(({ at_step }) => at_step <= last);
+    changes.push(...rateChanges(training, from).filter(({ step }) => step <= from + last));
+    const happened = disturbancesOf(training).filter(({ at_step }) => at_step <= last);
     disturbances.push(...happened.map((disturbance) => movedBy(disturbance, from)));
-    if (part !== run) from += part.progress?.done ?? 0;
+    if (training !== run) from += training.progress?.done ?? 0;
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
   const to = from + run.config.steps;
@@ -138,19 +138,19 @@ export function followCurves(trainings) {
     return connection.value === "live" ? [...ids].join(" ") : "";
   });
   /** Those that were requested and are wanted since. @type {Set<string>} */
-  let asked = new Set();
+  let requestedIds = new Set();
   const request = (/** @type {string} */ id) =>
     load(id).catch((/** @type {RequestError} */ error) => {
       if (isLasting(error)) {
-        asked.delete(id);
+        requestedIds.delete(id);
         return;
       }
       setTimeout(() => wanted.peek().split(" ").includes(id) && request(id), RETRY_MS);
     });
   effect(() => {
-    const before = asked;
-    asked = new Set(wanted.value.split(" ").filter(Boolean));
-    [...asked].filter((id) => !before.has(id)).forEach(request);
+    const before = requestedIds;
+    requestedIds = new Set(wanted.value.split(" ").filter(Boolean));
+    [...requestedIds].filter((id) => !before.has(id)).forEach(request);
   });
   followRuns(computed(() => chains.value.flatMap(([first]) => first.config.continue_from ?? [])));
 }
@@ -243,17 +243,17 @@ export function configAtEnd(run) {
  */
 export function rateChanges({ changes = [], config }, offset = 0) {
   /** @type {RateChange[]} */
-  const found = [];
+  const rateList = [];
   for (const { step, settings = {} } of changes) {
     for (const [name, value] of Object.entries(settings)) {
       if (value === null) continue;
-      const before = found.findLast((change) => change.name === name);
+      const before = rateList.findLast((change) => change.name === name);
       const isBurst = before && offset + step - before.step <= BURST_SHARE * config.steps;
       if (isBurst) Object.assign(before, { value, step: offset + step });
-      else found.push({ name, value, step: offset + step });
+      else rateList.push({ name, value, step: offset + step });
     }
   }
-  return found.sort((a, b) => a.step - b.step);
+  return rateList.sort((a, b) => a.step - b.step);
 }
 
 /** @type {(agent: string, change: Pick<RateChange, "name" | "value">) => string} */
@@ -269,8 +269,8 @@ export function rateInWords(agent, { name, value }) {
  */
 export const changesInWords = (agent, changes) =>
   [...new Set(changes.map(({ name }) => name))].map((name) => {
-    const own = changes.filter((change) => change.name === name);
-    const last = own[own.length - 1];
-    const others = own.length > 1 ? ` (${count(own.length, "change")})` : "";
-    return `${rateInWords(agent, last)} from step ${whole(last.step)}${others}`;
+    const ofName = changes.filter((change) => change.name === name);
+    const last = ofName[ofName.length - 1];
+    const remark = ofName.length > 1 ? ` (${count(ofName.length, "change")})` : "";
+    return `${rateInWords(agent, last)} from step ${whole(last.step)}${remark}`;
   });

@@ -95,7 +95,7 @@
     if (!batch.legs) return [];
     return Array.from({ length: batch.positions.length / 3 }, (_, index) => {
       const { origin, wxyz } = parts(batch, index);
-      const tip = rotated(wxyz, batch.tip).map((part, axis) => part + origin[axis]);
+      const tip = rotated(wxyz, batch.tip).map((coordinate, axis) => coordinate + origin[axis]);
       const [from, to] = [projected(name, origin), projected(name, tip)];
       return {
         lane: Math.floor(index / batch.legs.length), leg: batch.legs[index % batch.legs.length], from, to, low: tip[2],

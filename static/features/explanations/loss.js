@@ -42,6 +42,6 @@ export const followLoss = () => keepAnswer(
   () => 0,
 );
 
-/** Whether an answer is about a lane. @param {Loss} answer @param {LostLane} asked */
-export const isAbout = (answer, asked) =>
-  answer.run_id === asked.run_id && answer.lane === asked.lane && answer.clock === asked.clock;
+/** Whether an answer is about a lane. @param {Loss} answer @param {LostLane} settings */
+export const isAbout = (answer, settings) =>
+  answer.run_id === settings.run_id && answer.lane === settings.lane && answer.clock === settings.clock;

@@ -55,8 +55,8 @@ export function followTables(trainings) {
       (/** @type {RequestError} */ error) => afterError(error, id, done),
     );
     if (isWanted(id) && (answer.table ?? answer.problem)) {
-      const others = [...answers.value].filter(([other]) => isWanted(other));
-      answers.value = new Map([...others, [id, answer]]);
+      const remaining = [...answers.value].filter(([other]) => isWanted(other));
+      answers.value = new Map([...remaining, [id, answer]]);
     }
     setTimeout(() => {
       busy.delete(id);
@@ -67,9 +67,9 @@ export function followTables(trainings) {
   function look() {
     if (isOver || connection.value !== "live") return;
     for (const { id, progress } of trainings()) {
-      const known = answers.value.get(id);
-      const isRefused = known?.problem && known.done !== null;
-      if (!busy.has(id) && !isRefused && known?.done !== progress.done) load(id, progress.done);
+      const answer = answers.value.get(id);
+      const isRefused = answer?.problem && answer.done !== null;
+      if (!busy.has(id) && !isRefused && answer?.done !== progress.done) load(id, progress.done);
     }
   }
 
@@ -100,10 +100,10 @@ async function wholeTable(id, isWanted) {
   do {
     // All parts are of the same moment, however far the training gets meanwhile.
     const step = parts[0]?.step ?? null;
-    const part = await patiently(() => getTable({ training_id: id, step, first }), isWanted);
-    if (!part) return null;
-    parts.push(part);
-    first += part.values.length;
+    const rows = await patiently(() => getTable({ training_id: id, step, first }), isWanted);
+    if (!rows) return null;
+    parts.push(rows);
+    first += rows.values.length;
   } while (first < Math.min(parts[0].states, MAX_STATES));
   const { pairs, cells_m, cell_names, states } = parts[0];
   return {
@@ -128,17 +128,17 @@ export function differencesOf(first, other) {
   /** @type {DifferentState[]} */
   const different = [];
   const compared = Math.min(first.values.length, other.values.length);
-  const known = { both: 0, one: 0, other: 0 };
+  const counts = { both: 0, one: 0, other: 0 };
   for (let index = 0; index < compared; index += 1) {
     const bests = /** @type {[Best, Best]} */ ([bestIn(first, index), bestIn(other, index)]);
     const [inOne, inOther] = bests.map(({ visits }) => visits > 0);
-    if (inOne && inOther) known.both += 1;
-    else if (inOne) known.one += 1;
-    else if (inOther) known.other += 1;
+    if (inOne && inOther) counts.both += 1;
+    else if (inOne) counts.one += 1;
+    else if (inOther) counts.other += 1;
     if (inOne && inOther && !isSame(bests[0].move, bests[1].move)) different.push({ index, bests });
   }
   const least = (/** @type {DifferentState} */ { bests }) => Math.min(...bests.map(({ visits }) => visits));
-  return { different: different.sort((a, b) => least(b) - least(a) || a.index - b.index), compared, known };
+  return { different: different.sort((a, b) => least(b) - least(a) || a.index - b.index), compared, known: counts };
 }
 
 /** @type {(table: WholeTable, index: number) => Best} */

@@ -55,17 +55,17 @@ export const giveUpState = () => (chosenState.value = null);
 export function moveAt({ node, instance }, { pairs, cell_names }) {
   const [, lane, batchName] = /\/lane(\d+)\/grid\/(home|others)\/fills$/.exec(node) ?? [];
   if (lane === undefined || !(instance >= 0)) return null;
-  const others = cell_names.length - 1;
+  const count = cell_names.length - 1;
   const isHome = batchName === "home";
-  const leg = 1 + (isHome ? instance : Math.floor(instance / others));
+  const leg = 1 + (isHome ? instance : Math.floor(instance / count));
   const pair = pairs.findIndex((legs) => legs.includes(leg));
-  return pair < 0 ? null : { lane: Number(lane), move: [pair, isHome ? 0 : 1 + (instance % others)] };
+  return pair < 0 ? null : { lane: Number(lane), move: [pair, isHome ? 0 : 1 + (instance % count)] };
 }
 
 /** The state that a lane is in; null until it is known. @param {number} lane @returns {number[] | null} */
 function presentCells(lane) {
-  const known = scene.value?.action_values;
-  if (known?.lane === lane) return known.current;
+  const values = scene.value?.action_values;
+  if (values?.lane === lane) return values.current;
   const told = explanation.value.answer;
   const isOfLane = told && told.run_id === scene.value?.run_id && (told.lane ?? 0) === lane;
   return isOfLane ? told.observation : null;
@@ -104,12 +104,12 @@ function answerClick() {
   const grid = scene.value?.action_values;
   const at = stageMoment.value;
   if (!click || !grid || !at) return;
-  const found = moveAt(click, grid);
-  if (!found || click.run_id !== at.run_id) {
+  const clickedMove = moveAt(click, grid);
+  if (!clickedMove || click.run_id !== at.run_id) {
     clickedCell.value = null;
     return;
   }
-  const { lane, move } = found;
+  const { lane, move } = clickedMove;
   batch(() => {
     chosenLane.value = lane;
     followStage();

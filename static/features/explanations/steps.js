@@ -229,8 +229,8 @@ export function cellInWords(shown, row, column) {
     tried: `${fineMillimetres(value)}, tried ${visits === 1 ? "once" : count(visits, "time")}`,
   }[kind];
   const isKnown = shown.visits[row].some(Boolean);
-  const others = isKnown ? `best here: ${best}` : "nothing tried here";
-  const about = isBest && kind === "tried" ? "the best move here" : others;
+  const remark = isKnown ? `best here: ${best}` : "nothing tried here";
+  const about = isBest && kind === "tried" ? "the best move here" : remark;
   return { state: stateInWords(cells, shown), move: moveInWords(move, shown), worth, about };
 }
 

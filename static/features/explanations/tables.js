@@ -36,8 +36,8 @@ export const followLaneTables = () => keepAnswer(
   async (key) => {
     /** @type {TrainedLane[]} */
     const lanes = JSON.parse(key);
-    const asked = lanes.map(({ training_id }) => getTable({ training_id, step: null, first: 0 }));
-    const replies = await Promise.allSettled(asked);
+    const requests = lanes.map(({ training_id }) => getTable({ training_id, step: null, first: 0 }));
+    const replies = await Promise.allSettled(requests);
     return lanes.flatMap((lane, number) => {
       const reply = replies[number];
       if (reply.status === "fulfilled") {

@@ -48,9 +48,9 @@ function lanesOf(known, run) {
     const config = run.config.lanes?.[number] ?? lane;
     const { color, title } = agentOf(lane.agent);
     if (!lane.figures) return [];
-    const own = run.kind === "race" ? { title: laneTitle(config), color: colorOf(number) ?? color } : { title, color };
+    const look = run.kind === "race" ? { title: laneTitle(config), color: colorOf(number) ?? color } : { title, color };
     const { figures } = lane;
-    return [{ ...lane, figures, ...own, number, legs: legsInOrder(run, figures.legs.length) }];
+    return [{ ...lane, figures, ...look, number, legs: legsInOrder(run, figures.legs.length) }];
   });
 }
 

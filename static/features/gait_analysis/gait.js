@@ -287,8 +287,8 @@ export const FIGURES = [
 export function cycleSentence({ cycle }, legs) {
   if (!cycle) return "";
   const pairs = cycle.actions.map(([pair]) => {
-    const own = legs.filter(([, its]) => its === pair + 1).map(([leg]) => leg);
-    return own.length ? own.join(" and ") : `pair ${pair + 1}`;
+    const legsOfPair = legs.filter(([, its]) => its === pair + 1).map(([leg]) => leg);
+    return legsOfPair.length ? legsOfPair.join(" and ") : `pair ${pair + 1}`;
   });
   const advance = `${number(100 * cycle.advance_m, 1)}\u00a0cm`;
   return `From step ${cycle.first_step + 1} on it repeats ${count(cycle.steps, "step")} of ${advance} in all; ` +

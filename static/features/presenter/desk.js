@@ -15,13 +15,13 @@ import { html } from "../../js/components/elements.js";
 
 export function Desk() {
   const { code, is_blank } = presentation.value;
-  const known = useSpectators();
+  const spectators = useSpectators();
   return html`
     <section class=${`panel desk code-${code}`} aria-label="Presenter’s desk">
       <h1 class="sr-only">Racing Hexapods</h1>
       <${Act} />
       <${Keys} />
-      ${code !== "none" && html`<${Address} known=${known} />`}
+      ${code !== "none" && html`<${Address} known=${spectators} />`}
     </section>
     ${is_blank && html`
       <button class="blank" onClick=${toggleBlank} aria-label="Show the page again"></button>

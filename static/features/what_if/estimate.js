@@ -28,14 +28,14 @@ export function makeAnswer(start) {
   const answer = signal({ key: "", told: null });
   let newest = Promise.resolve();
   effect(() => {
-    const asked = key.value;
-    if (!asked) return undefined;
-    const isWanted = () => asked === key.peek();
+    const wantedKey = key.value;
+    if (!wantedKey) return undefined;
+    const isWanted = () => wantedKey === key.peek();
     const ask = async () => {
-      const { path, body } = JSON.parse(asked);
+      const { path, body } = JSON.parse(wantedKey);
       // Without an answer nothing is told: the start itself says what is wrong.
       const told = await api.patiently(() => api.call("POST", `${path}/estimate`, body), isWanted).catch(() => null);
-      if (isWanted()) answer.value = { key: asked, told };
+      if (isWanted()) answer.value = { key: wantedKey, told };
     };
     // One request at a time: each may hold a thread of the server.
     const timer = setTimeout(() => (newest = newest.then(ask)), QUIET_MS);

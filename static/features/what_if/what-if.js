@@ -51,13 +51,13 @@ export async function evaluateSettings() {
   }
   isComputing.value = true;
   hasMissed = false;
-  const asked = settings.peek();
+  const wanted = settings.peek();
   try {
-    const found = await api.call("POST", "what-if", JSON.parse(asked));
-    answer.value = { ...found, settings: asked };
+    const result = await api.call("POST", "what-if", JSON.parse(wanted));
+    answer.value = { ...result, settings: wanted };
     error.value = null;
   } catch (problem) {
-    error.value = asked === settings.peek() ? /** @type {RequestError} */ (problem) : null;
+    error.value = wanted === settings.peek() ? /** @type {RequestError} */ (problem) : null;
   } finally {
     isComputing.value = false;
   }
@@ -69,17 +69,17 @@ export async function evaluateSettings() {
  * the function that is returned is called.
  */
 export function followWhatIf() {
-  let known = "";
+  let answeredKey = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   const stop = effect(() => {
     const now = settings.value;
     const isAllowed = canAsk();
     clearTimeout(timer);
-    if (now === known || !isAllowed) return;
-    const isFirst = known === "";
+    if (now === answeredKey || !isAllowed) return;
+    const isFirst = answeredKey === "";
     timer = setTimeout(() => {
-      known = now;
+      answeredKey = now;
       if (!isCurrent.peek()) evaluateSettings();
     }, isFirst ? 0 : QUIET_MS);
   });

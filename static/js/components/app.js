@@ -92,8 +92,8 @@ const Dialogs = () => Object.entries(partsOf("dialogs"))
 
 /** With the style that no other view needs. @type {Record<string, () => Promise<FunctionComponent>>} */
 const LOADERS = {
-  runs: () => withStyle("style/runs.css", import("./runs/runs.js")).then((own) => own.Runs),
-  compare: () => withStyle("style/runs.css", import("./compare/compare.js")).then((own) => own.Compare),
+  runs: () => withStyle("style/runs.css", import("./runs/runs.js")).then((module) => module.Runs),
+  compare: () => withStyle("style/runs.css", import("./compare/compare.js")).then((module) => module.Compare),
 };
 
 /** @param {{ name: string }} props */

@@ -153,18 +153,18 @@ function copyStyles(from, to) {
 
 /** @param {string} name */
 function element(name, attributes = {}) {
-  const made = document.createElementNS(SVG, name);
+  const created = document.createElementNS(SVG, name);
   for (const [key, value] of Object.entries(attributes)) {
-    if (key !== "xmlns") made.setAttribute(key, String(value));
+    if (key !== "xmlns") created.setAttribute(key, String(value));
   }
-  return made;
+  return created;
 }
 
 /** @param {string} name @param {string} words */
 function textElement(name, words, attributes = {}) {
-  const made = element(name, attributes);
-  made.textContent = words;
-  return made;
+  const created = element(name, attributes);
+  created.textContent = words;
+  return created;
 }
 
 /**
@@ -176,9 +176,9 @@ function colourOf(host, name) {
   const probe = document.createElement("span");
   probe.style.color = `var(${name})`;
   host.parentElement?.append(probe);
-  const found = getComputedStyle(probe).color;
+  const computedColor = getComputedStyle(probe).color;
   probe.remove();
-  return asRgb(found);
+  return asRgb(computedColor);
 }
 
 /** A colour as other programs read it: not all know `oklab()`. @param {string} color */

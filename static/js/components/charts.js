@@ -292,8 +292,8 @@ export function AsTable({ caption, columns, rows }) {
             <caption class="sr-only">${caption}</caption>
             <thead><tr>${columns().map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
             <tbody>
-              ${rows().map(([first, ...others]) => html`
-                <tr><th scope="row">${first}</th>${others.map((cell) => html`<td>${cell}</td>`)}</tr>
+              ${rows().map(([first, ...cells]) => html`
+                <tr><th scope="row">${first}</th>${cells.map((cell) => html`<td>${cell}</td>`)}</tr>
               `)}
             </tbody>
           </table>

@@ -303,7 +303,7 @@ export function LegPicker({ azimuths, states, onLeg, isDisabled = false, describ
         <circle class="body" r=${PICKER.hip} /><path class="forward" d="M0-8 6 2H-6z" />
       </svg>
       ${legs.map(({ azimuth, leg, state }) => {
-        const [x, y] = pointAt(azimuth, PICKER.foot).map((part) => `${50 + Number(part)}%`);
+        const [x, y] = pointAt(azimuth, PICKER.foot).map((coordinate) => `${50 + Number(coordinate)}%`);
         return html`
           <button key=${leg} type="button" style=${{ left: x, top: y }} aria-pressed=${state ? "true" : "false"}
             aria-disabled=${isDisabled ? "true" : undefined} title=${`${verbOf(leg)} leg ${leg}`}

@@ -70,8 +70,8 @@ const DIRECTIONS = { ArrowUp: 1, ArrowDown: -1 };
  * @param {{ value: FormValue, draft: string | null, isOfForm: boolean }} typed
  */
 function shownIn(field, setting, { value, draft, isOfForm }) {
-  const kept = isOfForm ? wrong.value[field] : undefined;
-  if (kept) return kept;
+  const invalid = isOfForm ? wrong.value[field] : undefined;
+  if (invalid) return invalid;
   const read = draft === null ? null : parseSetting(draft, setting);
   if (read && read.mistake !== undefined && !isOfForm) return { text: draft, mistake: read.mistake };
   // Typed text is replaced only when the value has become another one, by a slider or a link.
@@ -203,16 +203,16 @@ export function Slider({
 export function SelectField({
   field, label, choices, value = form.value[field], onValue = (chosen) => setField(field, chosen), words,
 }) {
-  const kept = wrong.value[field];
+  const invalid = wrong.value[field];
   /** @param {{ target: HTMLSelectElement }} event */
   const onChange = ({ target }) => onValue(choices.find(([choice]) => textOf(choice) === target.value)?.[0] ?? null);
   return closable(field, html`
     <div class="field">
       <label for=${`field-${field}`}>${label}</label>
       <select ...${attributesOf(field)} onChange=${onChange}>
-        ${kept && html`<${InvalidOption} text=${kept.text} />`}
+        ${invalid && html`<${InvalidOption} text=${invalid.text} />`}
         ${choices.filter(([choice]) => isAllowed(field, choice)).map(([choice, title]) => html`
-          <option value=${textOf(choice)} selected=${!kept && textOf(choice) === textOf(value)}>${title}</option>
+          <option value=${textOf(choice)} selected=${!invalid && textOf(choice) === textOf(value)}>${title}</option>
         `)}
       </select>
       <${MistakeOf} field=${field} />
@@ -280,16 +280,16 @@ function NumberControl({ name, setting, ...rest }) {
 /** @param {Control} props */
 function Choice({ name, setting, value, onValue }) {
   const { choices, default: first } = bounded(name, setting);
-  const kept = wrong.value[name];
+  const invalid = wrong.value[name];
   return html`
     <select ...${attributesOf(name)} onChange=${(/** @type {Changed} */ { target }) => onValue(target.value || null)}>
-      ${kept && html`<${InvalidOption} text=${kept.text} />`}
-      ${first === null && html`<option value="" selected=${!kept && value === null}>by default</option>`}
-      ${first !== null && !kept && !choices.includes(String(value)) && html`
+      ${invalid && html`<${InvalidOption} text=${invalid.text} />`}
+      ${first === null && html`<option value="" selected=${!invalid && value === null}>by default</option>`}
+      ${first !== null && !invalid && !choices.includes(String(value)) && html`
         <option value="" selected disabled>choose</option>
       `}
       ${choices.map((choice) => html`
-        <option value=${choice} selected=${!kept && choice === value}>${choiceTitle(setting, choice)}</option>
+        <option value=${choice} selected=${!invalid && choice === value}>${choiceTitle(setting, choice)}</option>
       `)}
     </select>
     <${MistakeOf} field=${name} />
@@ -315,8 +315,8 @@ const Switch = ({ name, value, onValue }) => html`
 function Text({ name, setting, value, onValue, isOfForm }) {
   /** @param {{ target: HTMLSelectElement }} event */
   const onChange = ({ target }) => {
-    const { value: found, mistake } = parseSetting(target.value, setting);
-    if (mistake === undefined) onValue(found);
+    const { value: parsed, mistake } = parseSetting(target.value, setting);
+    if (mistake === undefined) onValue(parsed);
     else if (isOfForm) enter(name, target.value);
   };
   return html`

@@ -22,11 +22,11 @@ const HEADROOM = 1.16;
 const CURVE_INVITATION = "Each evaluation adds a point here, on its way to greedy’s line.";
 
 export function LearningChart() {
-  const known = curve.value;
+  const learningCurve = curve.value;
   return html`
     <section class="panel chart" aria-labelledby="learning-title">
       <h2 id="learning-title">Learning: distance in 50 steps</h2>
-      ${known ? html`<${Curve} known=${known} />` : html`<${Empty} words=${CURVE_INVITATION} />`}
+      ${learningCurve ? html`<${Curve} known=${learningCurve} />` : html`<${Empty} words=${CURVE_INVITATION} />`}
     </section>
   `;
 }
@@ -57,10 +57,10 @@ const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run, f
  * @param {number} from steps of practice before this training
  */
 function momentOf(run, from) {
-  const known = shownRun.value?.id === run.id ? scale.value : null;
-  if (!known) return [];
-  const picture = { x: from + known.picture, color: "--ink", width: 1.5 };
-  return known.isComputing ? [picture, { x: from + known.computed, color: "--accent", dash: [2, 3] }] : [picture];
+  const scaleNow = shownRun.value?.id === run.id ? scale.value : null;
+  if (!scaleNow) return [];
+  const picture = { x: from + scaleNow.picture, color: "--ink", width: 1.5 };
+  return scaleNow.isComputing ? [picture, { x: from + scaleNow.computed, color: "--accent", dash: [2, 3] }] : [picture];
 }
 
 /** @param {number} y */

@@ -67,14 +67,14 @@ function MenuAt({ at }) {
   const [place, setPlace] = useState(/** @type {Record<string, string>} */ ({ visibility: "hidden" }));
   useLayoutEffect(() => {
     const element = /** @type {HTMLElement} */ (menu.current);
-    const own = element.getBoundingClientRect();
+    const box = element.getBoundingClientRect();
     const picture = /** @type {HTMLElement} */ (element.parentElement).getBoundingClientRect();
     const within = (/** @type {number} */ start, /** @type {number} */ size, /** @type {number} */ room) =>
       `${Math.max(EDGE_PX, Math.min(start, room - size - EDGE_PX))}px`;
     // Beside the point, so that the robot can be seen: on its right where there is room, else on its left.
     const right = at.x + BESIDE_PX;
-    const left = right + own.width > picture.width ? at.x - own.width - BESIDE_PX : right;
-    setPlace({ left: within(left, own.width, picture.width), top: within(at.y - EDGE_PX, own.height, picture.height) });
+    const left = right + box.width > picture.width ? at.x - box.width - BESIDE_PX : right;
+    setPlace({ left: within(left, box.width, picture.width), top: within(at.y - EDGE_PX, box.height, picture.height) });
   }, []);
   const isPlaced = !("visibility" in place);
   // A race that is shown to its end meanwhile offers what there was not when the menu was opened.
@@ -164,8 +164,8 @@ function OfRace({ race, at }) {
   const { config } = race;
   const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
   const before = conditionsAt(disturbancesOf(race), from - 1, config.robot);
-  const known = stepShown.value === null ? null : scale.value;
-  const moment = known ? positionInWords(known, known.picture) : `step ${from}`;
+  const scaleNow = stepShown.value === null ? null : scale.value;
+  const moment = scaleNow ? positionInWords(scaleNow, scaleNow.picture) : `step ${from}`;
   const act = async () => {
     const chosen = chosenWith([], meant(at, kind, before, config.robot), before, config.robot);
     if (await branchRace(race, from - 1, chosen)) closeLegs();

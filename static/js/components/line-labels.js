@@ -214,8 +214,8 @@ export function placeCaptions(wanted, bounds) {
 export function chooseCaptions(places, bounds, covering) {
   /** @type {Box[]} */
   const placed = [];
-  return places.map((own) => {
-    const free = own.map((candidate) => shifted(candidate, bounds))
+  return places.map((candidates) => {
+    const free = candidates.map((candidate) => shifted(candidate, bounds))
       .filter((box) => box.top >= bounds.top && box.top + box.height <= bounds.top + bounds.height)
       .filter((box) => !placed.some((other) => overlap(box, other)));
     const counts = free.map(covering);
@@ -258,9 +258,9 @@ export function placeLabels(wanted, obstacles, bounds) {
     .sort((a, b) => distance(a, boxes) - distance(b, boxes));
   const placed = near ?? stacked(boxes, obstacles, bounds);
   /** @type {(Box | null)[]} */
-  const found = wanted.map(() => null);
-  inOrder.forEach(({ number }, n) => (found[number] = placed[n]));
-  return found;
+  const placedBoxes = wanted.map(() => null);
+  inOrder.forEach(({ number }, n) => (placedBoxes[number] = placed[n]));
+  return placedBoxes;
 }
 
 /** @type {(placed: (Box | null)[], wanted: Box[]) => number} */

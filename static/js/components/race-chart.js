@@ -16,15 +16,15 @@ const MAX_MOMENTS = 250;
 const FIRST_VIEW_S = 20;
 
 export function RaceChart() {
-  const known = timeline.value;
+  const raceTimeline = timeline.value;
   const time = shownTime.value;
   const problem = timelineProblem.value;
-  const isOn = known && time !== null && known.lanes.some(({ points }) => points.length > 1);
+  const isOn = raceTimeline && time !== null && raceTimeline.lanes.some(({ points }) => points.length > 1);
   return html`
     <section class="panel chart" aria-labelledby="race-title">
       <h2 id="race-title">Distance against time</h2>
       ${problem && html`<p class="problem" role="alert">${problem}</p>`}
-      ${isOn && html`<${Lines} known=${known} time=${time} />`}
+      ${isOn && html`<${Lines} known=${raceTimeline} time=${time} />`}
       ${!isOn && !problem && html`<${Empty} shape="lines" words=${invitation()} />`}
     </section>
   `;

@@ -134,12 +134,12 @@ function LearnerSettings() {
   const live = run ? agentOf(run.config.agent).live_settings : {};
   const main = mainSettings(form.value.agent);
   const acting = main.map((setting) => setting.live);
-  const others = Object.keys(live).filter((name) => !acting.includes(name));
+  const further = Object.keys(live).filter((name) => !acting.includes(name));
   return [
     ...main.map(({ name, live: rate, ...setting }) => (rate && rate !== name && rate in live
       ? closable(name, html`<${Present} key=${rate} name=${rate} setting=${live[rate]} run=${run} />`)
       : html`<${Chosen} key=${name} one=${{ ...setting, name, live: rate }} run=${name in live ? run : null} />`)),
-    ...others.map((name) =>
+    ...further.map((name) =>
       closable(name, html`<${Present} key=${name} name=${name} setting=${live[name]} run=${run} />`)),
     run && isOperator.value && html`<${NextRates} key="next-rates" run=${run} />`,
   ];
@@ -221,8 +221,8 @@ const HEXAPOD_LEGS = 6;
 /** The gaits that the robot's legs can have. A robot of one's own may have any: the server tells if not. */
 function gaitChoices() {
   const [chosen, fitting] = [form.value.gait, chosenRobot()?.gaits];
-  const known = served().gaits.filter(({ name }) => isAllowed("gait", name) && (!fitting || fitting.includes(name)));
-  return known.filter(({ name }, number) => isAtLeast("study") || number < FEW_GAITS || name === chosen);
+  const offered = served().gaits.filter(({ name }) => isAllowed("gait", name) && (!fitting || fitting.includes(name)));
+  return offered.filter(({ name }, number) => isAtLeast("study") || number < FEW_GAITS || name === chosen);
 }
 
 const GaitPicker = () => html`
@@ -322,8 +322,8 @@ const RobotField = ({ words = chosenRobot()?.description }) => html`
 /** Those that are offered, and a custom robot that a link or a run has brought. */
 function choicesOfRobot() {
   const { robot } = form.value;
-  const known = robotChoices([robot]);
-  return typeof robot === "string" ? known : [...known, [robot, robotTitle(robot)]];
+  const choices = robotChoices([robot]);
+  return typeof robot === "string" ? choices : [...choices, [robot, robotTitle(robot)]];
 }
 
 /** @param {{ field: string, step: number }} props */
@@ -353,8 +353,8 @@ function Pace() {
 
 /** Any number of lanes can be checked; one that is not valid is explained and holds the start. */
 function Lanes() {
-  const kept = wrong.value.lanes;
-  const lanes = kept ? kept.text.split(",").map((name) => name.trim()) : form.value.lanes;
+  const invalid = wrong.value.lanes;
+  const lanes = invalid ? invalid.text.split(",").map((name) => name.trim()) : form.value.lanes;
   const names = (options.value?.agents ?? []).map(({ name }) => name);
   /** @param {string} name */
   const toggle = (name) => {

@@ -146,14 +146,14 @@ const isPressed = ({ lasts, nothing }) => !lasts || nothing === null;
 function useValues(kind, others, conditions, onDisturb) {
   const [draft, setDraft] = useState(/** @type {Record<string, number | null>} */ ({}));
   const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
-  const held = conditions.find((other) => other.kind === kind.name);
-  const begin = kind.nothing === null ? firstFields(kind.name) : held;
+  const present = conditions.find((other) => other.kind === kind.name);
+  const begin = kind.nothing === null ? firstFields(kind.name) : present;
   const values = /** @type {Record<string, number | null | undefined>} */ ({ ...begin, ...draft });
   /** @param {Record<string, number | null | undefined>} chosen */
   const send = async (chosen) => {
     clearTimeout(timer.current);
-    const given = [kind.size, ...others.map(([other]) => other)].filter((field) => chosen[field] !== undefined);
-    const wanted = { kind: kind.name, ...Object.fromEntries(given.map((field) => [field, chosen[field] ?? null])) };
+    const set = [kind.size, ...others.map(([other]) => other)].filter((field) => chosen[field] !== undefined);
+    const wanted = { kind: kind.name, ...Object.fromEntries(set.map((field) => [field, chosen[field] ?? null])) };
     await onDisturb(/** @type {Disturbance} */ (wanted));
     if (!isPressed(kind)) setDraft({});
   };
@@ -215,10 +215,10 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
       const more = {
         id: `${id}-${name}`, of: kind.title, setting, value: values[name] ?? setting.default, isDisabled,
       };
-      /** @param {number | null} given */
-      const onValue = (given) => {
-        change(name, given);
-        finish(name, given);
+      /** @param {number | null} typed */
+      const onValue = (typed) => {
+        change(name, typed);
+        finish(name, typed);
       };
       return isTyped(setting)
         ? html`<${OtherNumber} key=${name} ...${more} onValue=${onValue} />`
@@ -275,8 +275,8 @@ const TYPED_STEP = 0.01;
 /** Why legs of a simulator's robot cannot be broken; empty if they can. @param {string} simulator */
 function reasonAgainst(simulator) {
   if (isSimulated("limp", simulator)) return "";
-  const known = served().disturbances.filter(({ simulators }) => simulators.includes(simulator));
-  const titles = listed(known.map(({ title }) => title.toLowerCase()));
+  const kinds = served().disturbances.filter(({ simulators }) => simulators.includes(simulator));
+  const titles = listed(kinds.map(({ title }) => title.toLowerCase()));
   return `The ideal simulator has no ground and no servos: only ${titles} can happen there.`;
 }
 

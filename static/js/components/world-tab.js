@@ -47,15 +47,15 @@ const shownMoment = () => (scale.value ? `, ${positionInWords(scale.value, scale
 /** What happened in the run on stage so far, each with a way to its moment. */
 function Happened() {
   const all = marks.value.filter(({ kind }) => ["disturbance", "fall", "change"].includes(kind));
-  const known = scale.value;
-  if (!known || !all.length) return null;
+  const scaleNow = scale.value;
+  if (!scaleNow || !all.length) return null;
   return html`
     <details class="more happened-list" open>
       <summary>What happened<span class="dim"> · ${all.length}</span></summary>
       <ul>
         ${all.map((world) => html`
           <li>
-            <b class="num">${positionInWords(known, world.at)}</b> <span>${markInWords(world)}</span>
+            <b class="num">${positionInWords(scaleNow, world.at)}</b> <span>${markInWords(world)}</span>
             <button class="link" onClick=${() => seekTo(world.at, { isHeld: true })}>Go there</button>
           </li>
         `)}

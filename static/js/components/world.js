@@ -129,8 +129,8 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
   const mistake = mistakeInText(text, form.value.simulator, form.value.robot);
   const { robot, gait } = form.value;
   /** @param {string} field */
-  const given = (field) => fields.find(([key]) => key === field || key === shortName(name, field))?.[1] ?? "";
-  const legs = given("legs").split(",").map(Number).filter(Boolean);
+  const textOfField = (field) => fields.find(([key]) => key === field || key === shortName(name, field))?.[1] ?? "";
+  const legs = textOfField("legs").split(",").map(Number).filter(Boolean);
   /** @param {number} leg */
   const toggle = (leg) => {
     const chosen = legs.includes(leg) ? legs.filter((other) => other !== leg) : [...legs, leg].sort((a, b) => a - b);
@@ -153,7 +153,8 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
           `}
           ${Object.entries(kind.fields).filter(([, field]) => !field.is_list).map(([field, setting]) => html`
             <${DisturbanceField} key=${field} id=${`disturbance-${number}-${field}`} field=${field} setting=${setting}
-              value=${given(field)} onValue=${(/** @type {string} */ value) => onText(withField(text, field, value))} />
+              value=${textOfField(field)}
+              onValue=${(/** @type {string} */ value) => onText(withField(text, field, value))} />
           `)}
         </div>
       `}

@@ -50,8 +50,8 @@ export function stepEnds({ points, thinking, futures }) {
 export function madeAt(track, time) {
   const ends = stepEnds(track);
   if (!ends) return null;
-  const told = ends.filter(([t]) => t <= time + SAME_MOMENT_S).length - 1;
-  return Math.min(told * track.stride, track.steps);
+  const count = ends.filter(([t]) => t <= time + SAME_MOMENT_S).length - 1;
+  return Math.min(count * track.stride, track.steps);
 }
 
 /**

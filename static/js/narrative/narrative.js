@@ -185,11 +185,11 @@ function loading({ isAway }) {
 /** @param {Facts} facts */
 function knownPractice({ run, scene, agents, tests, state }) {
   const training = /** @type {Run} */ (run);
-  const made = state === "practising" ? scene?.lanes[0]?.steps_made ?? 0 : Infinity;
+  const stepsMade = state === "practising" ? scene?.lanes[0]?.steps_made ?? 0 : Infinity;
   const name = training.config.agent;
   return {
     training, title: agents.find((agent) => agent.name === name)?.title ?? name,
-    newest: tests.findLast(({ step }) => step > 0 && step <= made) ?? null,
+    newest: tests.findLast(({ step }) => step > 0 && step <= stepsMade) ?? null,
   };
 }
 

@@ -213,11 +213,11 @@ function walked({ title, fell_at_step }, track, made, time) {
   if (!track || !ends) return null;
   const { stride, steps, futures } = track;
   // Of steps that are told of together, the whole strides, and the last steps that there are.
-  const told = made === steps ? futures.length : Math.floor(made / stride);
-  if (told < 1 || told >= ends.length) return null;
+  const reached = made === steps ? futures.length : Math.floor(made / stride);
+  if (reached < 1 || reached >= ends.length) return null;
   return {
-    title, made, stride, ends_m: ends.slice(0, told + 1).map(([, distance]) => distance),
-    futures: futures.slice(0, told), thought_s: timeSpent(track, time).thought,
+    title, made, stride, ends_m: ends.slice(0, reached + 1).map(([, distance]) => distance),
+    futures: futures.slice(0, reached), thought_s: timeSpent(track, time).thought,
     fell_at_step: fell_at_step !== null && fell_at_step < made ? fell_at_step : null,
   };
 }

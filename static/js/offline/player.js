@@ -141,8 +141,8 @@ class Player extends EventTarget {
 
   /** @param {number} number */
   #segment(number) {
-    const known = this.#segments.get(number);
-    if (known !== undefined) return known;
+    const segment = this.#segments.get(number);
+    if (segment !== undefined) return segment;
     this.#segments.set(number, null);
     for (const oldest of this.#segments.keys()) {
       if (this.#segments.size <= KEPT_SEGMENTS) break;
@@ -232,11 +232,11 @@ addEventListener("keydown", (event) => {
 
 // ---- the theme: of the address, or of the system
 
-const asked = new URLSearchParams(location.search).get("theme");
+const theme = new URLSearchParams(location.search).get("theme");
 const prefersDark = matchMedia("(prefers-color-scheme: dark)");
 const showTheme = () => {
   const system = prefersDark.matches ? "dark" : "light";
-  document.documentElement.dataset.theme = asked === "light" || asked === "dark" ? asked : system;
+  document.documentElement.dataset.theme = theme === "light" || theme === "dark" ? theme : system;
 };
 prefersDark.addEventListener("change", showTheme);
 showTheme();

@@ -352,8 +352,8 @@ function coloursOf(host) {
   return (/** @type {string} */ name) => {
     host.append(probe);
     probe.style.color = `var(${name})`;
-    const found = getComputedStyle(probe).color;
+    const computedColor = getComputedStyle(probe).color;
     probe.remove();
-    return found;
+    return computedColor;
   };
 }

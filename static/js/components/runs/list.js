@@ -98,8 +98,8 @@ const firstLine = (text) => text.split("\n")[0];
 /** The tags in use, to filter by. */
 function Tags() {
   const { tag } = filters.value;
-  const known = knownTags.value.slice(0, MAX_TAGS);
-  const all = tag === "" || known.includes(tag) ? known : [tag, ...known];
+  const commonTags = knownTags.value.slice(0, MAX_TAGS);
+  const all = tag === "" || commonTags.includes(tag) ? commonTags : [tag, ...commonTags];
   if (all.length === 0) return null;
   return html`
     <div class="tags" role="group" aria-label="Tag">

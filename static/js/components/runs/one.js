@@ -31,13 +31,13 @@ export function OneCurve({ run }) {
 /** @param {{ run: Run }} props */
 export function TrainingResult({ run }) {
   const best = bestPointOf(run);
-  const known = run.result?.best_known_m ?? bestKnown.value[run.id] ?? null;
+  const best_m = run.result?.best_known_m ?? bestKnown.value[run.id] ?? null;
   /** @type {[string, string | null][]} */
   const figures = [
     ["Distance", run.result ? metres(distanceOf(run)) : null],
     ["Best, at step", best && `${metres(best.distance_m)}, ${best.step}`],
     ["Share of Greedy", shareOf(run)],
-    ["Best known", known === null ? null : metres(known)],
+    ["Best known", best_m === null ? null : metres(best_m)],
   ];
   return html`
     <dl class="figures">

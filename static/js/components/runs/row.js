@@ -98,10 +98,10 @@ const MAIN = ["distance", "created"];
 /** @param {{ run: AnyRun }} props */
 function Cells({ run }) {
   const names = shownColumns.value;
-  const [others, main] = [names.filter((name) => !MAIN.includes(name)), names.filter((name) => MAIN.includes(name))];
+  const [minor, main] = [names.filter((name) => !MAIN.includes(name)), names.filter((name) => MAIN.includes(name))];
   return html`
-    ${others.length > 0 && html`
-      <div class="cells">${others.map((name) => html`<${Cell} key=${name} name=${name} run=${run} />`)}</div>
+    ${minor.length > 0 && html`
+      <div class="cells">${minor.map((name) => html`<${Cell} key=${name} name=${name} run=${run} />`)}</div>
     `}
     ${main.map((name) => html`<${Cell} key=${name} name=${name} run=${run} />`)}
   `;
