@@ -71,7 +71,7 @@ from hexapods.domain.settings import Setting as Setting
 from hexapods.domain.simulator import Motion as Motion
 from hexapods.domain.types import Action as Action
 from hexapods.domain.world import World as World
-from hexapods.experiments.folder import NotKept as NotKept
+from hexapods.experiments.folder import ResultNotStored as ResultNotStored
 from hexapods.experiments.worker import ClusterLost as ClusterLost
 from hexapods.experiments.worker import Outcome as Outcome
 from hexapods.interruption import Interrupted as Interrupted

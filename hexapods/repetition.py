@@ -223,7 +223,7 @@ def experiment(
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         ClusterLost: if the processes cannot be started, or are lost.
-        NotKept: if a result cannot be written to the folder.
+        ResultNotStored: if a result cannot be written to the folder.
     """
     fields_and_settings = given_arguments(locals(), _FIELDS, "settings")
     from hexapods.experiments.summary import summarise  # noqa: PLC0415  # slow to import

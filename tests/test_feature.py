@@ -34,7 +34,7 @@ OF_FEATURE = {
     "archives": "/api/v1/import",
     "exports": "/api/v1/runs/{run_id}/trajectory",
     "robots": "/api/v1/robots/{robot_id}",
-    "presenter": "/static/features/presenter/desk.js",
+    "presenter": "/static/features/presenter/presenter-panel.js",
 }
 """An address of each."""
 NAMES = tuple(name for name in OF_FEATURE if find_spec(f"app.features.{name}") is not None)

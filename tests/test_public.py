@@ -93,7 +93,7 @@ def test_only_the_public_names_are_seen() -> None:
 
 def test_errors_and_records_and_disturbances_are_there() -> None:
     errors = {name for name in dir(hx) if _is_class(name, hx.HexapodError)}
-    assert errors > {"TableMismatch", "Diverged", "ClusterLost", "TooLong", "NotKept"}
+    assert errors > {"TableMismatch", "Diverged", "ClusterLost", "TooLong", "ResultNotStored"}
     assert {name for name in dir(hx) if _is_class(name, hx.Disturbance)} == {
         "Disturbance",
         *(kind.__name__ for kind in KINDS.values()),

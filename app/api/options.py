@@ -42,7 +42,7 @@ from hexapods.agents.registry import (
 )
 from hexapods.domain import disturbances
 from hexapods.domain.creatures import CREATURES
-from hexapods.domain.disturbance_documents import SHORT, as_mapping
+from hexapods.domain.disturbance_documents import SHORT_NAMES, as_mapping
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot
@@ -253,7 +253,7 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
     """Return the fields of a kind of disturbance, its own before the steps."""
     declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
     options = {}
-    short = {field: name for name, field in SHORT.items()}
+    short = {field: name for name, field in SHORT_NAMES.items()}
     for item in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
         setting = declared.get(item.name, _LEGS)
         is_list, is_required = setting is _LEGS, item.default is MISSING

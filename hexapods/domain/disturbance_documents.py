@@ -97,7 +97,7 @@ AnyDisturbance = Annotated[Disturbance, JsonForm(disturbance_from, as_mapping, _
 """A disturbance of any kind."""
 
 
-SHORT = MappingProxyType({"at": "at_step", "until": "until_step"})
+SHORT_NAMES = MappingProxyType({"at": "at_step", "until": "until_step"})
 """Names of fields in a text, where they are others: name in a text → field."""
 
 
@@ -105,7 +105,7 @@ def as_text(value: Disturbance) -> str:
     """Return a disturbance as on a command line, the inverse of `parse_disturbance`."""
     values = as_mapping(value)
     name = values.pop("kind")
-    times = [(short, values.pop(field)) for short, field in SHORT.items() if field in values]
+    times = [(short, values.pop(field)) for short, field in SHORT_NAMES.items() if field in values]
     parts = [
         f"{field}={','.join(map(str, value_)) if isinstance(value_, list) else value_}"
         for field, value_ in [*values.items(), *times]
@@ -126,7 +126,7 @@ def parse_disturbance(text: str) -> Disturbance:
     values: dict[str, Any] = {}
     for part in parts:
         field, equals, value = part.partition("=")
-        field = SHORT.get(field, field)
+        field = SHORT_NAMES.get(field, field)
         if not equals or field in values or field == "kind":
             raise InvalidInput(
                 f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {part!r} is not"

@@ -28,7 +28,7 @@ _SYNC_S = 0.5
 _CHOOSE = "choose another folder"
 
 
-class NotKept(HexapodError):
+class ResultNotStored(HexapodError):
     """A result cannot be written; those written before it are kept."""
 
 
@@ -53,7 +53,7 @@ class ResultsFolder(Progress):
         0.5 s, the interval of `fsync`.
 
         Raises:
-            NotKept: if it cannot be written.
+            ResultNotStored: if it cannot be written.
         """
         row = {**outcome.as_json(), "compute_s": round(outcome.compute_s, 6)}
         self._write({**row, "worked_s": round(self.wall_s, 3)})
@@ -65,7 +65,7 @@ class ResultsFolder(Progress):
         Raises:
             InvalidInput: if the file has the results of another experiment or version.
             DamagedFile: if the file was not written by `add`.
-            NotKept: if the header cannot be written.
+            ResultNotStored: if the header cannot be written.
         """
         self._file = file
         lines = file.read().splitlines(keepends=True)
@@ -99,7 +99,7 @@ class ResultsFolder(Progress):
             with suppress(OSError):
                 self._file.truncate(self._end)
             why = "the disk is full" if is_disk_full(error) else error.strerror
-            raise NotKept(
+            raise ResultNotStored(
                 f"cannot write to {self.path / TRIALS}: {why}; what was done is kept, and the "
                 "same command goes on once it can be written"
             ) from error
@@ -173,7 +173,7 @@ def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder
         InvalidInput: if the folder cannot be used, is locked by another process, or contains
             other files or another experiment's results.
         DamagedFile: if the results file cannot be read.
-        NotKept: if the header of a new file cannot be written.
+        ResultNotStored: if the header of a new file cannot be written.
     """
     # Before the folder is made, since it refuses an invalid config.
     folder = ResultsFolder(path, config)

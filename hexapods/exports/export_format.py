@@ -95,7 +95,7 @@ class FileType:
         )
 
 
-HERE = Execution()
+IN_PROCESS = Execution()
 """Without limits, in this process."""
 
 Write = Callable[[ExportSource, FileType, Any, Execution], Iterable[bytes] | Iterable[str]]

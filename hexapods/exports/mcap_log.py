@@ -18,7 +18,7 @@ from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import FloatArray
-from hexapods.exports.export_format import HERE, Execution
+from hexapods.exports.export_format import IN_PROCESS, Execution
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
 from hexapods.extras import needs
 from hexapods.physics.mjcf import compile_visual_model
@@ -40,7 +40,9 @@ class _Frame(NamedTuple):
     torque_nm: FloatArray | None
 
 
-def mcap_log(walks: RecordedWalks, clock: Clock, execution: Execution = HERE) -> Iterator[bytes]:
+def mcap_log(
+    walks: RecordedWalks, clock: Clock, execution: Execution = IN_PROCESS
+) -> Iterator[bytes]:
     """Yield an MCAP file in chunks; time 0 of the run is the epoch.
 
     Args:

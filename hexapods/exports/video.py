@@ -19,7 +19,7 @@ import numpy as np
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.types import FloatArray
-from hexapods.exports.export_format import HERE, Execution
+from hexapods.exports.export_format import IN_PROCESS, Execution
 from hexapods.exports.options import VideoOptions
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
 from hexapods.extras import needs, no_opengl
@@ -67,7 +67,7 @@ def shown_poses(
 
 
 def render_video(
-    walks: RecordedWalks, options: VideoOptions, ending: str, execution: Execution = HERE
+    walks: RecordedWalks, options: VideoOptions, ending: str, execution: Execution = IN_PROCESS
 ) -> bytes:
     """Return the video of a run; raises as `shown_poses` and `write_video`.
 

@@ -26,7 +26,7 @@ from hexapods.imports.drawing import find_meshes
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
-from hexapods.imports.posed import Posed, resting_pose
+from hexapods.imports.posed import PosedRobot, resting_pose
 from hexapods.imports.servos import (
     FoundServo,
     angle_limits,
@@ -36,7 +36,7 @@ from hexapods.imports.servos import (
 )
 from hexapods.imports.shapes import GroundShape, drop_touching, link_shapes, torso_shapes
 from hexapods.imports.skeleton import FoundLeg, find_skeleton
-from hexapods.imports.stance import Angles, Legged, find_stance, reaches_grid
+from hexapods.imports.stance import Angles, RobotWithLegs, find_stance, reaches_grid
 
 _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
@@ -71,7 +71,7 @@ def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes
     rest = keyframes[_resting(keyframes)] if keyframes else compiled.model.qpos0
     pose = resting_pose(compiled.model, rest)
     skeleton = find_skeleton(compiled, pose, choices, notes)
-    posed = Posed(compiled, skeleton, pose)
+    posed = PosedRobot(compiled, skeleton, pose)
     names = [_names_of(compiled, leg) for leg in posed.legs]
     posed.turn(find_forward(posed.mounts()[:, :2], names, choices, notes))
     posed.order(numbered(_places(posed)))
@@ -103,7 +103,7 @@ def _names_of(compiled: Compiled, leg: FoundLeg) -> list[str]:
     return [*joints, *bodies, leg.foot.name]
 
 
-def _places(posed: Posed) -> FloatArray:
+def _places(posed: PosedRobot) -> FloatArray:
     """Return where legs are around the body: their mounts, or their feet if mounts are on axes."""
     mounts = posed.mounts()[:, :2]
     apart = np.linalg.norm(mounts[:, None] - mounts[None], axis=2)
@@ -116,7 +116,7 @@ def _places(posed: Posed) -> FloatArray:
 class _Builder:
     def __init__(
         self,
-        posed: Posed,
+        posed: PosedRobot,
         keyframes: Mapping[str, FloatArray],
         origin: FileOrigin,
         choices: Choices,
@@ -198,7 +198,7 @@ class _Builder:
         span: FloatArray = np.maximum(half, thick)
         return span
 
-    def _legged(self) -> Legged:
+    def _legged(self) -> RobotWithLegs:
         model = self._compiled.model
 
         def angles(qpos: FloatArray) -> Angles:
@@ -208,7 +208,7 @@ class _Builder:
             ]
 
         lowest = [shape.lowest_m(np.eye(3), np.zeros(3), np.zeros(3)) for shape in self._torso]
-        return Legged(
+        return RobotWithLegs(
             self._chains,
             [leg.foot.radius_m for leg in self._posed.legs],
             [

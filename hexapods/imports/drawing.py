@@ -11,7 +11,7 @@ from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
 from hexapods.imports.decimation import cluster
 from hexapods.imports.notes import Notes
-from hexapods.imports.posed import Posed
+from hexapods.imports.posed import PosedRobot
 from hexapods.imports.surfaces import Triangles
 
 _AIM = 0.7
@@ -23,7 +23,7 @@ _LEAST = 60
 
 
 def find_meshes(
-    posed: Posed, origins: Mapping[int | None, FloatArray], notes: Notes
+    posed: PosedRobot, origins: Mapping[int | None, FloatArray], notes: Notes
 ) -> dict[int | None, ModelMesh]:
     """Return what is drawn of each link, in its frame; nothing for one without shapes.
 
@@ -55,7 +55,7 @@ def find_meshes(
     return meshes
 
 
-def _drawn(posed: Posed, joint: int | None) -> list[int]:
+def _drawn(posed: PosedRobot, joint: int | None) -> list[int]:
     """Return the geoms that are drawn of a link: those that do not collide.
 
     All of a body's, if none of its are only drawn, or a mesh of it is missing.
@@ -71,7 +71,7 @@ def _drawn(posed: Posed, joint: int | None) -> list[int]:
 class _Simplified:
     """Surfaces with a share of their triangles; the same mesh is simplified once."""
 
-    def __init__(self, posed: Posed, share: float) -> None:
+    def __init__(self, posed: PosedRobot, share: float) -> None:
         self._posed, self._share = posed, share
         self._known: dict[int, Triangles] = {}
 

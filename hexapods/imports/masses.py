@@ -10,7 +10,7 @@ from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.imports.compiling import LEAST_KG
 from hexapods.imports.notes import Notes, listed
-from hexapods.imports.posed import Posed
+from hexapods.imports.posed import PosedRobot
 
 _DENSITY = 500.0
 """Density of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""
@@ -36,7 +36,7 @@ class Mass:
 
 
 def find_masses(
-    posed: Posed,
+    posed: PosedRobot,
     links: Mapping[int | None, str],
     ends: Mapping[int | None, FloatArray],
     notes: Notes,
@@ -79,7 +79,7 @@ def find_masses(
     return masses
 
 
-def _together(posed: Posed, bodies: Sequence[int]) -> Mass:
+def _together(posed: PosedRobot, bodies: Sequence[int]) -> Mass:
     masses = posed.compiled.model.body_mass
     body_masses = [
         Mass(float(masses[body]), posed.center_of_mass(body), posed.inertia(body))
@@ -97,7 +97,7 @@ def _together(posed: Posed, bodies: Sequence[int]) -> Mass:
     return Mass(kg, center, inertia + _LEAST_INERTIA * np.eye(3))
 
 
-def _of_shapes(posed: Posed, geoms: Sequence[int]) -> Mass | None:
+def _of_shapes(posed: PosedRobot, geoms: Sequence[int]) -> Mass | None:
     """Return the mass of the boxes around shapes; None if there are none."""
     colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
     boxes = []

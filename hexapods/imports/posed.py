@@ -18,7 +18,7 @@ from hexapods.imports.surfaces import Triangles, kind_of, triangles_of
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
-class Posed:
+class PosedRobot:
     """A robot in its reference pose.
 
     Attributes:

@@ -9,7 +9,7 @@ import numpy as np
 from hexapods.domain.robot_model import GeomKind, ModelGeom
 from hexapods.domain.types import FloatArray
 from hexapods.imports.notes import Notes
-from hexapods.imports.posed import Posed
+from hexapods.imports.posed import PosedRobot
 
 _MOST_OF_TORSO, _MOST_OF_LINK = 8, 6
 _LEAST_M = 0.001
@@ -58,7 +58,7 @@ def quaternion(rotation: FloatArray) -> tuple[float, float, float, float]:
     return w, x, y, z
 
 
-def torso_shapes(posed: Posed, span_m: FloatArray) -> list[GroundShape]:
+def torso_shapes(posed: PosedRobot, span_m: FloatArray) -> list[GroundShape]:
     """Return the torso's own shapes if they are simple and few, or a box around them.
 
     Args:
@@ -80,7 +80,7 @@ def torso_shapes(posed: Posed, span_m: FloatArray) -> list[GroundShape]:
 
 
 def link_shapes(
-    posed: Posed, joint: int, foot: tuple[FloatArray, float] | None
+    posed: PosedRobot, joint: int, foot: tuple[FloatArray, float] | None
 ) -> list[GroundShape]:
     """Return the shapes of a link, without the ball of its foot.
 
@@ -110,7 +110,7 @@ def drop_touching(
     return clear
 
 
-def _of_torso(posed: Posed) -> list[int]:
+def _of_torso(posed: PosedRobot) -> list[int]:
     """Return the torso's bodies without what hangs on locked joints, such as an arm."""
     model = posed.compiled.model
     locked = {int(model.jnt_bodyid[joint]) for joint in posed.skeleton.locked}
@@ -121,13 +121,13 @@ def _of_torso(posed: Posed) -> list[int]:
     return [body for body in posed.bodies_of(None) if body not in away]
 
 
-def _touching(posed: Posed, geoms: Sequence[int]) -> list[int]:
+def _touching(posed: PosedRobot, geoms: Sequence[int]) -> list[int]:
     """Return the geoms that touch the ground; all if none does."""
     colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
     return colliding or list(geoms)
 
 
-def _simple_shape(posed: Posed, geom: int) -> GroundShape | None:
+def _simple_shape(posed: PosedRobot, geom: int) -> GroundShape | None:
     """Return a geom that is simple already; None for a mesh."""
     kind = posed.kind(geom)
     if kind == "mesh":
@@ -138,7 +138,7 @@ def _simple_shape(posed: Posed, geom: int) -> GroundShape | None:
     return GroundShape(kind, plain, posed.geom_center(geom), posed.geom_rotation(geom))  # type: ignore[arg-type]  # of the primitives
 
 
-def _around(posed: Posed, geom: int) -> GroundShape | None:
+def _around(posed: PosedRobot, geom: int) -> GroundShape | None:
     """Return a capsule along a mesh."""
     box = np.array(posed.compiled.model.geom_aabb[geom])
     center, half = box[:3], box[3:]

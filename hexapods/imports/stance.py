@@ -41,7 +41,7 @@ Angles = list[FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
-class Legged:
+class RobotWithLegs:
     """Inputs of a stance.
 
     Attributes:
@@ -74,7 +74,7 @@ class Legged:
         return np.array(feet) - self.radii_m
 
 
-def find_stance(legged: Legged, choices: Choices, notes: Notes) -> Angles:
+def find_stance(legged: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
     """Return the angles with which the robot stands, leg by leg.
 
     Raises:
@@ -86,16 +86,16 @@ def find_stance(legged: Legged, choices: Choices, notes: Notes) -> Angles:
     return angles
 
 
-def reaches_grid(legged: Legged, angles: Angles) -> bool:
+def reaches_grid(legged: RobotWithLegs, angles: Angles) -> bool:
     """Whether each foot reaches its box from a stance."""
     return not any(_unreached(chain, leg_angles) for chain, leg_angles in _pairs(legged, angles))
 
 
-def _pairs(legged: Legged, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
+def _pairs(legged: RobotWithLegs, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
     return list(zip(legged.chains, angles, strict=True))
 
 
-def _found(legged: Legged, choices: Choices, notes: Notes) -> Angles:
+def _found(legged: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
     if choices.keyframe is not None:
         if choices.keyframe not in legged.keyframes:
             valid = listed(legged.keyframes) or "none"
@@ -125,11 +125,11 @@ def _suitability(name: str) -> int:
     return min(ranks, default=len(_HOMES))
 
 
-def _within(legged: Legged, angles: Angles) -> Angles:
+def _within(legged: RobotWithLegs, angles: Angles) -> Angles:
     return [np.clip(leg_angles, *chain.limits) for chain, leg_angles in _pairs(legged, angles)]
 
 
-def _problem(legged: Legged, angles: Angles) -> str | None:
+def _problem(legged: RobotWithLegs, angles: Angles) -> str | None:
     """Return why a stance is not good; None if it is."""
     for (chain, leg_angles), names in zip(_pairs(legged, angles), legged.names, strict=True):
         low, high = chain.limits
@@ -159,7 +159,7 @@ def _unreached(chain: LegChain, angles: FloatArray) -> bool:
     return bool((off > PRECISION * chain.length_m).any())
 
 
-def _level(legged: Legged, angles: Angles, notes: Notes) -> Angles:
+def _level(legged: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
     """Move the feet up or down to one height, where they reach it."""
     bottoms = legged.bottoms_m(angles)
     if np.ptp(bottoms) < 1e-6:
@@ -187,7 +187,7 @@ def _level(legged: Legged, angles: Angles, notes: Notes) -> Angles:
     return moved
 
 
-def _changed(legged: Legged, angles: Angles, chosen: Mapping[str, float]) -> Angles:
+def _changed(legged: RobotWithLegs, angles: Angles, chosen: Mapping[str, float]) -> Angles:
     """Return a stance with some angles as a person decided."""
     places = {
         name: (leg, joint)
@@ -211,7 +211,7 @@ def _changed(legged: Legged, angles: Angles, chosen: Mapping[str, float]) -> Ang
     return changed
 
 
-def search(legged: Legged) -> Angles:
+def search(legged: RobotWithLegs) -> Angles:
     """Return a stance with bent knees, in which legs that mirror each other do so.
 
     Of several postures the first from which all feet reach their boxes, or most.
@@ -228,7 +228,7 @@ def search(legged: Legged) -> Angles:
     return stance
 
 
-def _posture(legged: Legged, number: int) -> Angles:
+def _posture(legged: RobotWithLegs, number: int) -> Angles:
     rng = np.random.default_rng(0)
     first: FloatArray | None = None
     posture = []

@@ -12,7 +12,7 @@ import pytest
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import ExperimentConfig, experiment_config
-from hexapods.experiments.folder import TRIALS, NotKept, open_results
+from hexapods.experiments.folder import TRIALS, ResultNotStored, open_results
 from hexapods.experiments.trial import TrialResult, run_trial
 from hexapods.experiments.worker import Outcome
 from tests.experiments.clusters import small, trials_of
@@ -214,7 +214,7 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, outcomes: list[Outcome]) -> N
     with open_results(tmp_path, CONFIG) as opened:
         opened.add(first)
         size = (tmp_path / TRIALS).stat().st_size
-        with no_file_over(size + 20), pytest.raises(NotKept) as refused:
+        with no_file_over(size + 20), pytest.raises(ResultNotStored) as refused:
             opened.add(second)
         assert (tmp_path / TRIALS).stat().st_size == size
         assert list(opened.results) == [first.key]
@@ -226,7 +226,7 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, outcomes: list[Outcome]) -> N
 
 def test_a_disk_that_is_full_from_the_start_is_reported(tmp_path: Path) -> None:
     with no_file_over(10):
-        assert "the disk is full" in refusal(tmp_path, kind=NotKept)
+        assert "the disk is full" in refusal(tmp_path, kind=ResultNotStored)
     with open_results(tmp_path, CONFIG) as opened:
         assert opened.results == {}
 

@@ -17,7 +17,7 @@ def each_stance_is_searched_once() -> Iterator[None]:
     """
     search, kept = stance.search, dict[bytes, list[np.ndarray]]()
 
-    def kept_search(legged: stance.Legged) -> stance.Angles:
+    def kept_search(legged: stance.RobotWithLegs) -> stance.Angles:
         key = pickle.dumps(legged)
         if key not in kept:
             kept[key] = search(legged)

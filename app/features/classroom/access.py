@@ -25,7 +25,7 @@ from app.api.problems import as_sentence, problem
 from app.api.stage_paths import stage_of
 from app.api.work import OTHER, Work
 from app.features.classroom.names import CODE, normalized
-from app.features.classroom.room import Deed, Room
+from app.features.classroom.room import CardAction, Room
 from app.features.classroom.room_rows import Seat
 from app.features.classroom.rooms import Rooms
 from app.features.classroom.what_ifs import WhatIfs
@@ -53,17 +53,17 @@ class ParticipantAccess(Access):
     """Who is in the room `code` of the path may do it.
 
     Attributes:
-        deed: what the card that is shown must allow; to leave is always allowed.
+        action: what the card that is shown must allow; to leave is always allowed.
     """
 
-    deed: Deed | Literal["leave"]
+    action: CardAction | Literal["leave"]
     is_for_operators: bool = False
 
 
 @cache
-def participant(deed: Deed | Literal["leave"]) -> ParticipantAccess:
-    """Return the access of a deed of participants in their room."""
-    return ParticipantAccess(name=f"participant: {deed}", deed=deed)
+def participant(action: CardAction | Literal["leave"]) -> ParticipantAccess:
+    """Return the access of a action of participants in their room."""
+    return ParticipantAccess(name=f"participant: {action}", action=action)
 
 
 class Participant:
@@ -117,20 +117,20 @@ class Participant:
         return None if why is None else problem(403, as_sentence(why))
 
     def _why_not(self, access: ParticipantAccess, room: Room) -> str | None:
-        """Return why the card that a room shows forbids a deed; None if it allows it."""
-        if access.deed == "leave":
+        """Return why the card that a room shows forbids a action; None if it allows it."""
+        if access.action == "leave":
             return None
-        self.asks_what_if = access.deed == "run" and room.shown.go == "what-if"
-        return room.refusal(access.deed)
+        self.asks_what_if = access.action == "run" and room.shown.go == "what-if"
+        return room.refusal(access.action)
 
     def _what_is_allowed(self, access: Access) -> str:
         code = self.seats[0][0]
         room = self._rooms.get(code)
-        deeds: dict[Deed, str] = {
+        actions: dict[CardAction, str] = {
             "predict": "an answer to the card",
             "run": "the run of the card",
         }
-        open_deeds = [words for deed, words in deeds.items() if room.refusal(deed) is None]
+        open_deeds = [words for action, words in actions.items() if room.refusal(action) is None]
         allowed = " and ".join(open_deeds) or "nothing but to watch"
         what = "This question" if access is QUESTION else "This"
         return (

@@ -10,7 +10,7 @@ from app.features.classroom.room_rows import ParticipantRow, RoomRun
 from app.storage.errors import Conflict, Forbidden, NotFound
 
 Phase = Literal["open", "frozen", "ended"]
-Deed = Literal["predict", "run"]
+CardAction = Literal["predict", "run"]
 """Actions of a participant that the card may allow."""
 _ASKS_NOTHING = "card {number} asks nothing; wait for one with a question"
 _RUNS_NOTHING = "card {number} runs nothing; wait for one with a button to go"
@@ -112,12 +112,12 @@ class Room:
             runs={**self.runs},
         )
 
-    def refusal(self, deed: Deed) -> str | None:
-        """Return why the card that is shown forbids a deed; None if it allows it."""
+    def refusal(self, action: CardAction) -> str | None:
+        """Return why the card that is shown forbids a action; None if it allows it."""
         card = self.shown
-        if deed == "predict" and card.ask is None:
+        if action == "predict" and card.ask is None:
             return _ASKS_NOTHING.format(number=self.card)
-        if deed == "run" and card.go is None:
+        if action == "run" and card.go is None:
             return _RUNS_NOTHING.format(number=self.card)
         return None
 

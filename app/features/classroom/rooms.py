@@ -15,7 +15,7 @@ from app.features.classroom.lesson import Lesson, plain, read_lesson
 from app.features.classroom.lessons import FoundLesson
 from app.features.classroom.names import Choose, new_code, normalized
 from app.features.classroom.questions import check_answer
-from app.features.classroom.room import Deed, Room
+from app.features.classroom.room import CardAction, Room
 from app.features.classroom.room_rows import ParticipantRow, PredictionRow, RoomRow, RoomRows, Seat
 from app.features.classroom.room_runs import RoomRuns
 from app.features.classroom.seats import (
@@ -606,8 +606,8 @@ def _check_shown(room: Room, card: int | None) -> None:
             raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
 
 
-def _check_allowed(room: Room, deed: Deed) -> None:
-    if (refusal := room.refusal(deed)) is not None:
+def _check_allowed(room: Room, action: CardAction) -> None:
+    if (refusal := room.refusal(action)) is not None:
         raise Forbidden(refusal)
 
 

@@ -9,7 +9,7 @@ from app.cli.options import CommandParser, add_settings
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
 from app.settings import read_settings
 from hexapods.domain.errors import InvalidInput
-from hexapods.exports.export_format import HERE, EncodedReplay, ExportFormat, as_bytes
+from hexapods.exports.export_format import IN_PROCESS, EncodedReplay, ExportFormat, as_bytes
 from hexapods.exports.registry import EXPORTS
 from hexapods.runs.clocks import Clock
 
@@ -61,7 +61,7 @@ def _write(given: argparse.Namespace, export: ExportFormat) -> int:
             return ReplayFrames(Replays(store, recordings)).encoded(run_id, clock)
 
         source = source_of(run, recordings, encode)
-        data = b"".join(as_bytes(export.write(source, file, options, HERE)))
+        data = b"".join(as_bytes(export.write(source, file, options, IN_PROCESS)))
     write_whole(given.out, data)
     if given.json:
         print(json.dumps({"id": run.id, "file": given.out, "bytes": len(data)}))

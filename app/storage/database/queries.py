@@ -23,7 +23,7 @@ from sqlalchemy import (
 )
 
 from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
-from app.storage.database.schema import BESIDE, RUNS
+from app.storage.database.schema import NON_FIELD_COLUMNS, RUNS
 from app.storage.errors import NotFound
 
 Row = dict[str, Any]
@@ -49,7 +49,9 @@ def _undecoded(column: ColumnElement[Any], name: str) -> ColumnElement[Any]:
     return column.label(name)
 
 
-RAW_RUN = tuple(_undecoded(column, column.name) for column in RUNS.c if column not in set(BESIDE))
+RAW_RUN = tuple(
+    _undecoded(column, column.name) for column in RUNS.c if column not in set(NON_FIELD_COLUMNS)
+)
 """Undecoded columns of a run, for SELECT and RETURNING; `rows.try_decode_run` decodes them."""
 
 

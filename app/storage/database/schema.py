@@ -59,7 +59,7 @@ RUNS = Table(
     Index("ix_runs_state_id", "state", "id"),
 )
 
-BESIDE = (RUNS.c.distance_m, RUNS.c.is_imported)
+NON_FIELD_COLUMNS = (RUNS.c.distance_m, RUNS.c.is_imported)
 """Columns that are no fields of a run."""
 
 EVALUATIONS = Table(

@@ -13,7 +13,7 @@ import { html } from "../../js/components/elements.js";
 
 /** @import { Spectators } from "../../js/types.js" */
 
-export function Desk() {
+export function PresenterPanel() {
   const { code, is_blank } = presentation.value;
   const spectators = useSpectators();
   return html`
