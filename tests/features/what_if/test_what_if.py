@@ -26,6 +26,7 @@ from app.storage.errors import Busy
 from hexapods.agents.registry import BUILT_IN, learns
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import World
 from hexapods.experiments.plan import trial_seed
 from hexapods.experiments.trial import TrialConfig, run_trial
@@ -132,7 +133,7 @@ def test_interquartile_mean_equals_scipys() -> None:
         ({"divisions": 6, "grid_side_m": 0.03}, "fewer divisions"),
         ({"agent": "no.such:Agent"}, "no.such"),
         ({"grid_side_m": 0.5}, "reach"),
-        ({"agent": "tests.own_agents:Clumsy"}, "I tripped"),
+        ({"agent": "tests.own_agents:Clumsy", "settings": SettingValues({})}, "I tripped"),
     ],
 )
 def test_invalid_training_is_refused_with_the_reason(
