@@ -3,8 +3,8 @@
 `server` builds all parts once (`create_app`) and runs them with the lifespan; `feature` is the seam
 by which `features` add to them, `installed_features` says which there are, and `active_features`
 asks all of them; `feature_modules` finds their parts that need no server. `settings` are those of a
-server and of its features (`feature_settings`), of the kinds of `setting_fields`; `cache` is a
-cache of encoded answers.
+server and of its features (`feature_settings`), of the kinds of `setting_fields`; `setting_checks`
+are checks of texts; `cache` is a cache of encoded answers.
 docs/architecture.md has a row for each package.
 
 Processes and threads:

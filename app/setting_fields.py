@@ -1,6 +1,6 @@
 """Kinds of settings: how one is declared, read from the text of its variable, and checked."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import Field, field, fields
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,6 +13,8 @@ PREFIX = "HEXAPODS_"
 _KIND = "kind"
 _YES, _NO = ("1", "true", "yes", "on"), ("0", "false", "no", "off")
 _MAX_DIGITS = 18
+Check = Callable[[str, str], None]
+"""Raises InvalidInput if a text, the second argument, is not valid for a variable, the first."""
 
 
 class WholeNumber(NamedTuple):
@@ -31,17 +33,22 @@ class WholeNumber(NamedTuple):
     def read(self, variable: str, text: str) -> int:
         """Return the number that a text is; InvalidInput if it is none."""
         if not text.isascii() or not text.isdigit():
-            raise InvalidInput(f"{variable} must be a whole number{self.unit}, not {text!r}")
+            raise InvalidInput(
+                f"{variable} must be a whole number{self.unit}, {self._limits}, not {text!r}"
+            )
         return int(text[:_MAX_DIGITS])
 
     def check(self, variable: str, number: int | None) -> None:
         """Raise InvalidInput if a number is out of the limits."""
         if number is None or (number >= self.least and (self.most is None or number <= self.most)):
             return
-        limits = (
-            f"at least {self.least}" if self.most is None else f"from {self.least} to {self.most}"
-        )
-        raise InvalidInput(f"{variable} must be {limits}, not {number}")
+        raise InvalidInput(f"{variable} must be {self._limits}, not {number}")
+
+    @property
+    def _limits(self) -> str:
+        if self.most is None:
+            return f"at least {self.least}"
+        return f"from {self.least} to {self.most}"
 
 
 class Switch(NamedTuple):
@@ -83,7 +90,51 @@ class OneOf(NamedTuple):
             raise UnknownName(variable, value, self.values)
 
 
-Kind = WholeNumber | Switch | OneOf
+class Text(NamedTuple):
+    """Kind of a setting that is a text.
+
+    Attributes:
+        test: which texts there are; None for any.
+    """
+
+    test: Check | None
+
+    def read(self, variable: str, text: str) -> str:
+        """Return the text."""
+        del variable
+        return text
+
+    def check(self, variable: str, text: str | None) -> None:
+        """Raise InvalidInput if the text is not valid."""
+        if text is not None and self.test is not None:
+            self.test(variable, text)
+
+
+class Names(NamedTuple):
+    """Kind of a setting that is a list of names, separated by commas.
+
+    Attributes:
+        test: which names there are; None for any.
+        ignores_case: whether the names are read in lower case.
+    """
+
+    test: Check | None
+    ignores_case: bool
+
+    def read(self, variable: str, text: str) -> tuple[str, ...]:
+        """Return the names in a text, without empty ones."""
+        del variable
+        names = (text.lower() if self.ignores_case else text).split(",")
+        return tuple(filter(None, map(str.strip, names)))
+
+    def check(self, variable: str, names: Sequence[str]) -> None:
+        """Raise InvalidInput if one of the names is not valid."""
+        for name in names:
+            if self.test is not None:
+                self.test(variable, name)
+
+
+Kind = WholeNumber | Switch | OneOf | Text | Names
 
 
 def whole_number(
@@ -103,13 +154,23 @@ def choice(default: str, values: Sequence[str]) -> Any:
     return field(default=default, metadata={_KIND: OneOf(values)})
 
 
+def text(default: str | None, test: Check | None = None, *, is_secret: bool = False) -> Any:
+    """Declare a field that is a text; see `Text`. `repr` leaves a secret out."""
+    return field(default=default, repr=not is_secret, metadata={_KIND: Text(test)})
+
+
+def names(test: Check | None = None, *, ignores_case: bool = False) -> Any:
+    """Declare a field that is a list of names, empty by default; see `Names`."""
+    return field(default=(), metadata={_KIND: Names(test, ignores_case)})
+
+
 def variable_of(name: str) -> str:
     """Return the environment variable of a setting."""
     return PREFIX + name.upper()
 
 
 def kind_of(declared: Field[Any]) -> Kind | None:
-    """Return the kind of a field; None if its class reads and checks it by itself."""
+    """Return the kind of a field; None if it has none: its text is its value, unchecked."""
     kind: Kind | None = declared.metadata.get(_KIND)
     return kind
 

@@ -1,18 +1,17 @@
 """Settings of a server: from the environment, overruled by options, checked before anything starts.
 
 Every name is `HEXAPODS_…`; an empty variable counts as none, since that is how compose files
-leave one out. Features declare settings of their own (`feature_settings`), of kinds that
-`setting_fields` has.
+leave one out. Those of the core are declared here as those of features are in their folders
+(`feature_settings`): as fields of kinds that `setting_fields` has.
 """
 
 import ctypes
 import ipaddress
 import os
-import re
 import sys
 import tempfile
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from itertools import chain
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args
@@ -21,7 +20,23 @@ from urllib.parse import urlsplit
 import platformdirs
 
 from app.feature_settings import FeatureSettings, installed_settings
-from app.setting_fields import PREFIX, check_kinds, choice, read_texts, variable_of, whole_number
+from app.setting_checks import (
+    check_database_url,
+    check_host_name,
+    check_network,
+    check_public_url,
+    check_token,
+)
+from app.setting_fields import (
+    PREFIX,
+    check_kinds,
+    choice,
+    names,
+    read_texts,
+    text,
+    variable_of,
+    whole_number,
+)
 from hexapods.domain.errors import InvalidInput
 
 Spectators = Literal["public", "token"]
@@ -32,9 +47,6 @@ ROBOTS_FOLDER = "robots"
 """In the data folder: documents of stored robots, in a folder for each database."""
 MIN_QUOTA_MB = 10
 MAX_PORT = 65535
-MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
-_TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
-_HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,15 +78,15 @@ class Settings:
         features: settings of features, of those that are left out, too.
     """
 
-    host: str = "127.0.0.1"
-    port: int = 8000
+    host: str = text("127.0.0.1")
+    port: int = whole_number(8000, 0, MAX_PORT)
     data: Path
-    token: str | None = field(default=None, repr=False)
+    token: str | None = text(None, check_token, is_secret=True)
     spectators: Spectators = choice("public", get_args(Spectators))
-    public_url: str | None = None
-    allowed_hosts: tuple[str, ...] = ()
-    trusted_proxies: tuple[str, ...] = ()
-    database_url: str | None = field(default=None, repr=False)
+    public_url: str | None = text(None, check_public_url)
+    allowed_hosts: tuple[str, ...] = names(check_host_name, ignores_case=True)
+    trusted_proxies: tuple[str, ...] = names(check_network, ignores_case=True)
+    database_url: str | None = text(None, check_database_url, is_secret=True)
     quota_mb: int | None = whole_number(None, MIN_QUOTA_MB, unit=" of megabytes")
     max_connections: int | None = whole_number(None, 1)
     max_connections_per_address: int | None = whole_number(None, 1)
@@ -82,26 +94,11 @@ class Settings:
     job_niceness: int = whole_number(15, 0, 19)
     max_viewers: int = whole_number(300, 1)
     log_level: LogLevel = choice("info", get_args(LogLevel))
-    without: tuple[str, ...] = ()
+    without: tuple[str, ...] = names()
     features: tuple[FeatureSettings, ...] = ()
 
     def __post_init__(self) -> None:
-        if isinstance(self.port, bool) or not 0 <= self.port <= MAX_PORT:
-            raise _invalid_port(self.port)
-        if self.token is not None and not _TOKEN.fullmatch(self.token):
-            raise InvalidInput(
-                f"{PREFIX}TOKEN must have {MIN_TOKEN_LENGTH} to {MAX_TOKEN_LENGTH} printable ASCII "
-                "characters and no spaces; `openssl rand -hex 16` makes a good one"
-            )
         check_kinds(self)
-        if self.public_url is not None:
-            _check_url(self.public_url)
-        for name in self.allowed_hosts:
-            _check_host(name)
-        for name in self.trusted_proxies:
-            _check_network(name)
-        if self.database_url is not None:
-            _check_database_url(self.database_url)
         for settings in self.features:
             if settings.feature in self.without:
                 settings.check_left_out()
@@ -165,7 +162,7 @@ class Settings:
 
 
 def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Settings:
-    """The settings of an environment; an option that is not None goes before its variable.
+    """Return the settings of an environment; an option that is not None overrules its variable.
 
     Args:
         environ: the environment.
@@ -175,19 +172,14 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
         InvalidInput: for a value that cannot be, or a refusal to start with it.
     """
     features, without = read_feature_settings(environ, **options), _without(environ, options)
-    names = {declared.name for declared in fields(Settings)}
+    of_core = {declared.name for declared in fields(Settings)}
     of_features = {declared.name for settings in features for declared in fields(settings)}
-    values_given = _given((names | options.keys()) - of_features - {"features"}, environ, options)
+    values_set = _values_set(
+        (of_core | options.keys()) - of_features - {"features"}, environ, options
+    )
     stricter = _stricter_defaults(features, without)
-    values = {name: value for name, value in stricter.items() if name in names} | values_given
+    values = {name: value for name, value in stricter.items() if name in of_core} | values_set
     values |= read_texts(Settings, values)
-    if isinstance(values.get("port"), str):
-        values["port"] = _port(values["port"])
-    for name in ("allowed_hosts", "trusted_proxies"):
-        if isinstance(values.get(name), str):
-            hosts = values[name].lower().split(",")
-            values[name] = tuple(host.strip() for host in hosts if host.strip())
-    values["without"] = without
     data = values.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
     return Settings(data=Path(data).expanduser().absolute(), features=features, **values)
 
@@ -198,11 +190,11 @@ def read_feature_settings(
     """Return the settings of all features alone; arguments and errors as of `read_settings`."""
     without = _without(environ, options)
     kinds = _kinds_of_features(without)
-    names = {declared.name for kind in kinds for declared in fields(kind)}
-    values_given = _given(names, environ, options)
+    of_features = {declared.name for kind in kinds for declared in fields(kind)}
+    values_set = _values_set(of_features, environ, options)
 
     def read(defaults: Mapping[str, Any]) -> tuple[FeatureSettings, ...]:
-        return tuple(kind(**read_texts(kind, {**defaults, **values_given})) for kind in kinds)
+        return tuple(kind(**read_texts(kind, {**defaults, **values_set})) for kind in kinds)
 
     return read(_stricter_defaults(read({}), without))
 
@@ -213,35 +205,37 @@ def _kinds_of_features(without: Collection[str]) -> list[type[FeatureSettings]]:
     Raises:
         InvalidInput: if a setting of one is there already.
     """
-    names = {declared.name for declared in fields(Settings)}
+    declared_names = {declared.name for declared in fields(Settings)}
     kinds = []
     for kind in installed_settings(without):
         added = {declared.name for declared in fields(kind)}
-        if twice := sorted(names & added):
+        if twice := sorted(declared_names & added):
             if kind.feature in without:
                 continue
             raise InvalidInput(
                 f"the feature {kind.feature} has the setting {variable_of(twice[0])}, which is "
                 f"there already; leave {kind.feature} out by {PREFIX}WITHOUT"
             )
-        names |= added
+        declared_names |= added
         kinds.append(kind)
     return kinds
 
 
-def _given(
-    names: Collection[str], environ: Mapping[str, str], options: Mapping[str, Any]
+def _values_set(
+    setting_names: Collection[str], environ: Mapping[str, str], options: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return what is set of these settings, by name: options before variables."""
-    texts = {name: text for name in names if (text := environ.get(variable_of(name)))}
+    texts = {name: value for name in setting_names if (value := environ.get(variable_of(name)))}
     return texts | {
-        name: value for name, value in options.items() if name in names and value is not None
+        name: value
+        for name, value in options.items()
+        if name in setting_names and value is not None
     }
 
 
 def _without(environ: Mapping[str, str], options: Mapping[str, Any]) -> tuple[str, ...]:
-    without = options.get("without") or read_without(environ)
-    return _names(without) if isinstance(without, str) else tuple(without)
+    values = read_texts(Settings, _values_set(["without"], environ, options))
+    return tuple(values.get("without", ()))
 
 
 def _stricter_defaults(
@@ -257,7 +251,7 @@ def _stricter_defaults(
 
 def read_without(environ: Mapping[str, str] = os.environ) -> tuple[str, ...]:
     """Return the names of the features that an environment leaves out."""
-    return _names(environ.get(f"{PREFIX}WITHOUT", ""))
+    return _without(environ, {})
 
 
 def remove_secrets() -> None:
@@ -285,63 +279,3 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
     except ValueError:
         return False
-
-
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(filter(None, map(str.strip, text.split(","))))
-
-
-def _port(text: str) -> int:
-    if not text.isascii() or not text.isdigit():
-        raise _invalid_port(text)
-    return int(text)
-
-
-def _invalid_port(port: int | str) -> InvalidInput:
-    return InvalidInput(f"the port must be from 0 to {MAX_PORT}, not {port!r}")
-
-
-def _check_host(name: str) -> None:
-    if not _HOST_NAME.fullmatch(name):
-        raise InvalidInput(
-            f"{PREFIX}ALLOWED_HOSTS must be host names separated by commas, without "
-            f"scheme, port or star; {name!r} is none"
-        )
-
-
-def _check_network(name: str) -> None:
-    try:
-        ipaddress.ip_network(name)
-    except ValueError as error:
-        raise InvalidInput(
-            f"{PREFIX}TRUSTED_PROXIES must be addresses or networks separated by commas, such as "
-            f"127.0.0.1 or 172.16.0.0/12; {name!r} is none"
-        ) from error
-
-
-def _check_database_url(url: str) -> None:
-    """The URL itself is in no message, since it may hold a password."""
-    try:
-        parts = urlsplit(url)
-        good = (
-            parts.scheme in ("postgresql", "postgres") and parts.path.strip("/") and parts.port != 0
-        )
-    except ValueError:
-        good = False
-    if not good:
-        raise InvalidInput(
-            f"{PREFIX}DATABASE_URL must look like postgresql://user:password@host/database; "
-            "without it, SQLite in the data folder is used"
-        )
-
-
-def _check_url(url: str) -> None:
-    try:
-        parts = urlsplit(url)
-        good = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
-    except ValueError:
-        good = False
-    if not good or parts.username or parts.path.strip("/") or parts.query or parts.fragment:
-        raise InvalidInput(
-            f"{PREFIX}PUBLIC_URL must look like https://hexapods.example, without path, not {url!r}"
-        )

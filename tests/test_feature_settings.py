@@ -12,12 +12,17 @@ from app.settings import read_settings, remove_secrets
 from hexapods.domain.errors import InvalidInput
 
 DIARY = """
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 from app.feature_settings import FeatureSettings
-from app.setting_fields import choice, switch, whole_number
+from app.setting_fields import choice, names, switch, text, whole_number
 from hexapods.domain.errors import InvalidInput
+
+
+def check_reader(variable, name):
+    if name == "nobody":
+        raise InvalidInput(f"{variable} must be names of readers, not {name!r}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +31,8 @@ class DiarySettings(FeatureSettings):
     diary: bool = switch(option="write a diary")
     diary_lines: int = whole_number(10, 1, 99, unit=" of lines")
     diary_ink: str = choice("blue", ("blue", "red"))
-    diary_key: str | None = field(default=None, repr=False)
+    diary_key: str | None = text(None, is_secret=True)
+    diary_readers: tuple[str, ...] = names(check_reader, ignores_case=True)
 
     def stricter_defaults(self):
         return {"max_viewers": 7, "diary_lines": 3} if self.diary else {}
@@ -68,6 +74,8 @@ def test_they_are_read_like_those_of_the_core() -> None:
     kind = next(kind for kind in installed_settings() if kind.feature == "diary")
     assert settings.of(kind) == kind(diary=True, diary_lines=40, diary_ink="red")  # type: ignore[call-arg]
     assert settings.max_viewers == 7
+    readers = read_settings({"HEXAPODS_DIARY_READERS": "Ann, BOB,"}).of(kind)
+    assert readers == kind(diary_readers=("ann", "bob"))  # type: ignore[call-arg]
     assert settings.of(kind) != read_settings(ON).of(kind) == kind(diary=True, diary_lines=3)  # type: ignore[call-arg]
     assert read_settings({}).of(kind) == kind()
     assert read_settings({**ON, "HEXAPODS_MAX_VIEWERS": "9"}).max_viewers == 9
@@ -81,6 +89,7 @@ def test_they_are_read_like_those_of_the_core() -> None:
         ({"HEXAPODS_DIARY": "so"}, "HEXAPODS_DIARY must be 1 or 0, not 'so'"),
         ({"HEXAPODS_DIARY_LINES": "few"}, "HEXAPODS_DIARY_LINES must be a whole number of lines"),
         ({"HEXAPODS_DIARY_LINES": "100"}, "HEXAPODS_DIARY_LINES must be from 1 to 99, not 100"),
+        ({"HEXAPODS_DIARY_READERS": "Ann, Nobody"}, "HEXAPODS_DIARY_READERS.*not 'nobody'"),
         ({"HEXAPODS_DIARY_INK": "green"}, "HEXAPODS_DIARY_INK.*green.*blue, red"),
         (
             {**ON, "HEXAPODS_WITHOUT": "diary"},

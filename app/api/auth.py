@@ -35,7 +35,7 @@ class TokenGuard:
     binds to loopback only. An operator's browser has a session, whose id is in a cookie. Wrong
     tokens and wrong session ids of an address draw on the same token bucket. The right ones are let
     in even when it is empty, or others at an operator's address could lock them out: they are too
-    long to be guessed (`MIN_TOKEN_LENGTH`), and the limit bounds the load. What a client who is no
+    long to be guessed (`check_token`), and the limit bounds the load. What a client who is no
     operator may do is decided by the access of the route, and by the features that know the client.
     """
 

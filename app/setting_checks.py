@@ -1,0 +1,72 @@
+"""Checks of settings that are texts: tokens, names of hosts, networks and URLs.
+
+Each takes the variable of the setting and a text, and raises InvalidInput if that is not valid.
+"""
+
+import ipaddress
+import re
+from urllib.parse import urlsplit
+
+from hexapods.domain.errors import InvalidInput
+
+MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
+_TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
+_HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
+
+
+def check_token(variable: str, token: str) -> None:
+    """Check an access token, which is in no message."""
+    if not _TOKEN.fullmatch(token):
+        raise InvalidInput(
+            f"{variable} must have {MIN_TOKEN_LENGTH} to {MAX_TOKEN_LENGTH} printable ASCII "
+            "characters and no spaces; `openssl rand -hex 16` makes a good one"
+        )
+
+
+def check_host_name(variable: str, name: str) -> None:
+    """Check one of the host names of a list."""
+    if not _HOST_NAME.fullmatch(name):
+        raise InvalidInput(
+            f"{variable} must be host names separated by commas, without "
+            f"scheme, port or star; {name!r} is none"
+        )
+
+
+def check_network(variable: str, name: str) -> None:
+    """Check one of the addresses and networks of a list."""
+    try:
+        ipaddress.ip_network(name)
+    except ValueError as error:
+        raise InvalidInput(
+            f"{variable} must be addresses or networks separated by commas, such as "
+            f"127.0.0.1 or 172.16.0.0/12; {name!r} is none"
+        ) from error
+
+
+def check_database_url(variable: str, url: str) -> None:
+    """Check the URL of a PostgreSQL database, which is in no message: it may hold a password."""
+    try:
+        parts = urlsplit(url)
+        is_valid = (
+            parts.scheme in ("postgresql", "postgres") and parts.path.strip("/") and parts.port != 0
+        )
+    except ValueError:
+        is_valid = False
+    if not is_valid:
+        raise InvalidInput(
+            f"{variable} must look like postgresql://user:password@host/database; "
+            "without it, SQLite in the data folder is used"
+        )
+
+
+def check_public_url(variable: str, url: str) -> None:
+    """Check the URL at which a proxy offers a server: an origin, without path or user."""
+    try:
+        parts = urlsplit(url)
+        is_valid = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
+    except ValueError:
+        is_valid = False
+    if not is_valid or parts.username or parts.path.strip("/") or parts.query or parts.fragment:
+        raise InvalidInput(
+            f"{variable} must look like https://hexapods.example, without path, not {url!r}"
+        )
