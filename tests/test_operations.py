@@ -7,8 +7,15 @@ from pathlib import Path
 
 from app.cli.commands import command_modules
 from app.setting_fields import PREFIX
+from app.storage.database.migration import newest_revision
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.storage.run import TABLE
+from hexapods.benchmarking import score_file
+from hexapods.domain import robot_documents
+from hexapods.experiments import folder
+from hexapods.experiments.config import SUMMARY_FORMAT
+from hexapods.runs import tables
+from hexapods.tournaments import tournament_file
 from tests.setting_defaults import DEFAULTS
 from tests.storage.stores import opened, training
 
@@ -24,6 +31,17 @@ def test_every_setting_is_there_with_its_default() -> None:
         if isinstance(default, str | int):
             assert said == f"`{default}`", name
     assert set(re.findall(rf"{PREFIX}(\w+)", TEXT)) <= {*rows, "DATABASE_PASSWORD", "MEMORY_LIMIT"}
+
+
+def test_the_version_of_each_format_is_there() -> None:
+    rows = re.findall(r"^\| ([^|]+) \| (?:`|viser)[^|]* \| ([^|]*) ?\|$", TEXT, flags=re.MULTILINE)
+    versions = {name: version.strip("` ") for name, version in rows}
+    assert versions["database"].startswith(newest_revision())
+    assert versions["table, checkpoint (`.npz`)"] == str(tables.FORMAT)
+    assert versions["results of an experiment"] == str(folder.FORMAT) == str(SUMMARY_FORMAT)
+    assert versions["document of a robot"] == robot_documents.FORMAT
+    files = "score file of a benchmark, file of a tournament"
+    assert versions[files] == str(score_file.FORMAT) == str(tournament_file.FORMAT)
 
 
 def test_every_command_is_one() -> None:

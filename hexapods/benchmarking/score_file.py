@@ -8,7 +8,8 @@ from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import PLAIN_SEED, PROTOCOLS, BestKnown
 from hexapods.benchmarking.runs import Run, RunResult, TaskPlan
 from hexapods.benchmarking.scores import scores_of
-from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
+from hexapods.domain.checks import check_format
+from hexapods.domain.errors import DamagedFile, HexapodError, OtherFormat, UnknownName
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import complete
@@ -67,6 +68,7 @@ def decode(data: bytes, name: str) -> dict[str, Any]:
 
     Raises:
         UnknownName: if this version does not know its protocol.
+        OtherFormat: if it is of another version.
         DamagedFile: if it is no score file.
     """
     try:
@@ -74,13 +76,12 @@ def decode(data: bytes, name: str) -> dict[str, Any]:
             raise ValueError(f"it has more than {MAX_BYTES:,} bytes")
         check_lists(data)
         content = json.loads(data, parse_constant=_refuse)
-        if content["format"] != FORMAT:
-            raise ValueError(f"its format is {content['format']!r}; this version reads {FORMAT}")
+        check_format(name, content["format"], FORMAT)
         if content["protocol"] not in PROTOCOLS:
             raise UnknownName("protocol", content["protocol"], PROTOCOLS)
         config_of(content)
         results_of(content)
-    except UnknownName:
+    except (UnknownName, OtherFormat):
         raise
     except (HexapodError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         why = {KeyError: f"it lacks {error}", RecursionError: "it is nested too deeply"}

@@ -1,12 +1,13 @@
-"""Checks of numbers that a user gave: whole ones, and limits as annotated in a type."""
+"""Checks of what a user gave: whole numbers, limits as annotated in a type, formats of files."""
 
 from dataclasses import asdict
 
 from annotated_types import Ge, Gt, Le, Lt, MultipleOf
 
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import InvalidInput, OtherFormat
 
 Limit = Ge | Gt | Le | Lt | MultipleOf
+_MAX_SHOWN = 40
 
 
 def check_whole(name: str, value: int, low: int, high: int | None) -> None:
@@ -20,6 +21,25 @@ def check_whole(name: str, value: int, low: int, high: int | None) -> None:
     if value < low or (high is not None and value > high):
         limits = f"at least {low}" if high is None else f"from {low} to {high:,}"
         raise InvalidInput(f"{name} must be {limits}, not {value:,}")
+
+
+def check_format(label: str, version: object, supported: int | str) -> None:
+    """Check the version of a file's format; each format has one that is read.
+
+    Args:
+        label: name of the file.
+        version: which the file says, untrusted.
+        supported: which is read.
+
+    Raises:
+        OtherFormat: if it is an earlier or a later one, or none.
+    """
+    if type(version) is not type(supported) or version != supported:
+        raise OtherFormat(
+            f"{label} has format {repr(version)[:_MAX_SHOWN]}; this version reads {supported!r} "
+            "alone, and leaves the file as it is: use the version of Racing Hexapods that wrote "
+            "it, or write it again with this one"
+        )
 
 
 def bound_of(limit: Limit) -> float:

@@ -76,6 +76,10 @@ class DamagedFile(InvalidInput):
     """A file is truncated, or its content is not of the expected format."""
 
 
+class OtherFormat(DamagedFile):
+    """A file is of an earlier or later version of its format than the one that is read."""
+
+
 class IllegalAction(HexapodError):
     """An agent chose an action that is illegal in the current state."""
 

@@ -13,7 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.checks import check_format
+from hexapods.domain.errors import DamagedFile, InvalidInput, OtherFormat
 from hexapods.domain.json_lists import check_lists
 
 ID_DIGITS = 16
@@ -66,17 +67,19 @@ def decode(data: bytes, label: str = "the document of a robot") -> dict[str, Any
     """Return the content of a document, which is not validated.
 
     Raises:
-        DamagedFile: if it is none in canonical JSON, or of another format.
+        OtherFormat: if it is of another version.
+        DamagedFile: if it is none in canonical JSON.
     """
     try:
         if len(data) > MAX_BYTES:
             raise ValueError(f"it has more than {MAX_BYTES:,} bytes")
         check_lists(data)
         content: dict[str, Any] = dict(json.loads(data))
-        if content.pop("format") != FORMAT:
-            raise ValueError(f"its format is not {FORMAT}")
+        check_format(label, content.pop("format"), FORMAT)
         if encode(content) != data:
             raise ValueError("its JSON is not canonical")
+    except OtherFormat:
+        raise
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise DamagedFile(f"{label} is damaged: {error}") from error
     return content

@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
+from hexapods.domain.checks import check_format
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.experiments.config import SUMMARY, ExperimentConfig, by_option
@@ -63,7 +64,8 @@ class ResultsFolder(Progress):
         """Read the existing results in a file, or write the header of a new one.
 
         Raises:
-            InvalidInput: if the file has the results of another experiment or version.
+            OtherFormat: if the file is of another version.
+        InvalidInput: if it has the results of another experiment or of other software.
             DamagedFile: if the file was not written by `add`.
             ResultNotStored: if the header cannot be written.
         """
@@ -71,14 +73,16 @@ class ResultsFolder(Progress):
         lines = file.read().splitlines(keepends=True)
         if lines and not lines[-1].endswith(b"\n"):
             lines.pop()  # a partial write: the process was killed while appending it
+        if lines:
+            self._check(self._head(lines[0]))
         self._end = sum(map(len, lines))
+        # What is refused is left as it is.
         file.truncate(self._end)
         if not lines:
             config = to_json(self.plan.config)
             kind = self.plan.config.kind
             self._write({"format": FORMAT, "kind": kind, "versions": versions(), "config": config})
             return
-        self._check(self._head(lines[0]))
         for number, line in enumerate(lines[1:], start=2):
             self._read(number, line)
 
@@ -109,24 +113,19 @@ class ResultsFolder(Progress):
 
     def _head(self, line: bytes) -> dict[str, Any]:
         try:
-            head = json.loads(line)
-            if "format" in head and all(
-                isinstance(head[name], dict) for name in ("versions", "config")
-            ):
-                return dict(head)
+            head = dict(json.loads(line))
+            version = head["format"]
         except (KeyError, TypeError, ValueError):
-            pass
+            head, version = {}, FORMAT
+        check_format(str(self.path / TRIALS), version, FORMAT)
+        if all(isinstance(head.get(name), dict) for name in ("versions", "config")):
+            return head
         raise DamagedFile(
             f"{self.path / TRIALS} does not begin as results of an experiment do; {_CHOOSE}"
         )
 
     def _check(self, head: Mapping[str, Any]) -> None:
-        if head["format"] != FORMAT:
-            raise InvalidInput(
-                f"{self.path} has results in format {head['format']}, and this version writes "
-                f"format {FORMAT}; {_CHOOSE}"
-            )
-        if head["kind"] != self.plan.config.kind:
+        if head.get("kind") != self.plan.config.kind:
             raise InvalidInput(f"{self.path} has results of another experiment; {_CHOOSE}")
         differs = difference(versions(), head["versions"])
         if differs is not None:
@@ -170,6 +169,7 @@ def open_results(path: Path, config: ExperimentConfig) -> Iterator[ResultsFolder
     Existing results of the same experiment with fewer or more seeds are reused.
 
     Raises:
+        OtherFormat: if the results file is of another version.
         InvalidInput: if the folder cannot be used, is locked by another process, or contains
             other files or another experiment's results.
         DamagedFile: if the results file cannot be read.

@@ -7,7 +7,8 @@ from typing import IO, Any
 from hexapods.agents.landing_table import LANDING_ARRAYS, LandingRows, check_landings
 from hexapods.agents.q_table import check_size
 from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
-from hexapods.domain.errors import DamagedFile, TableMismatch
+from hexapods.domain.checks import check_format
+from hexapods.domain.errors import DamagedFile, OtherFormat, TableMismatch
 from hexapods.domain.grid import FootGrid
 from hexapods.runs.npz_slices import NpzSlices
 from hexapods.runs.tables import FORMAT, table_arrays
@@ -30,14 +31,14 @@ class TableFile:
 
         Raises:
             TableMismatch: if the agent has no Q-table, or the lengths of the arrays differ.
+            OtherFormat: if it is of another version.
             DamagedFile: if it is no valid table file.
             InvalidInput: if the table is too large.
         """
         try:
             self._slices = NpzSlices(file)
             self.meta: Mapping[str, Any] = json.loads(str(self._slices.rows("meta")))
-            if self.meta["format"] != FORMAT:
-                raise ValueError(f"it has format {self.meta['format']}, not {FORMAT}")
+            check_format(label, self.meta["format"], FORMAT)
             names = table_arrays({name.removeprefix("agent.") for name in self._slices.arrays})
             if names is None:
                 raise TableMismatch(f"the agent {self.meta['agent']} keeps no Q-table")
@@ -47,7 +48,7 @@ class TableFile:
                 raise ValueError("its arrays are of another shape")
             grid = FootGrid(self.meta["grid_side_m"], self.meta["divisions"])
             shape = len(self.meta["pairs"]), len(grid)
-        except TableMismatch:
+        except (TableMismatch, OtherFormat):
             raise
         except Exception as error:  # zipfile and NumPy document no complete list of exceptions
             raise DamagedFile(f"{label} is not a Q-table of this product: {error}") from error

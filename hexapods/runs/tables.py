@@ -24,6 +24,7 @@ from hexapods.agents.landing_table import (
 from hexapods.agents.protocol import Agent, Tabular
 from hexapods.agents.q_table import check_arrays, check_size
 from hexapods.agents.table_rows import TABLE_ARRAYS, VALUES_AT_ONCE, Part, TableRows
+from hexapods.domain.checks import check_format
 from hexapods.domain.disturbance_documents import as_mapping
 from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
 from hexapods.domain.grid import FootGrid
@@ -268,21 +269,20 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
         name: name of the file for error messages.
 
     Raises:
-        DamagedFile: if it is no table, was changed since it was written, is compressed, or is of
-            another format version.
+        OtherFormat: if it is of another version.
+        DamagedFile: if it is no table, was changed since it was written, or is compressed.
     """
     try:
         members = read_arrays(data)
         digest = str(members.pop("digest"))
         is_intact = digest == digest_of(members)
         meta = json.loads(str(members.pop("meta")))
-        is_supported = meta["format"] == FORMAT
+        version = meta["format"]
     except Exception as error:  # zipfile and NumPy document no complete list of exceptions
         raise DamagedFile(f"{name} is not a Q-table of this product: {error}") from error
     if not is_intact:
         raise DamagedFile(f"{name} is damaged: its contents do not match its checksum")
-    if not is_supported:
-        raise DamagedFile(f"{name} has format {meta['format']}; this version reads {FORMAT}")
+    check_format(name, version, FORMAT)
     return Checkpoint(meta, members)
 
 

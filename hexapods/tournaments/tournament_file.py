@@ -9,7 +9,14 @@ from typing import Any, NoReturn
 
 from hexapods.assembly import build_walkers
 from hexapods.domain import robot_documents
-from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, TooLong
+from hexapods.domain.checks import check_format
+from hexapods.domain.errors import (
+    DamagedFile,
+    HexapodError,
+    InvalidInput,
+    OtherFormat,
+    TooLong,
+)
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import Record, from_json, to_json
 from hexapods.domain.robot import parse_document
@@ -219,13 +226,16 @@ def read_file(data: bytes, name: str) -> TournamentFile:
         name: of the file, for messages.
 
     Raises:
-        DamagedFile: if it is no tournament of this product, of a later format, or one of its tables
-            or robots is not what its name says.
+        OtherFormat: if it is of another version.
+        DamagedFile: if it is no tournament of this product, or one of its tables or robots is not
+            what its name says.
     """
     try:
-        with robot_documents.lent(_robots(_checked(data))):
+        with robot_documents.lent(_robots(_checked(data, name))):
             tournament = from_json(TournamentFile, data, strict=True)
         _check_tables(tournament)
+    except OtherFormat:
+        raise
     except (HexapodError, ValueError, TypeError, AttributeError, RecursionError) as error:
         reason = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
         raise DamagedFile(
@@ -234,12 +244,13 @@ def read_file(data: bytes, name: str) -> TournamentFile:
     return tournament
 
 
-def _checked(data: bytes) -> dict[str, Any]:
+def _checked(data: bytes, name: str) -> dict[str, Any]:
     """Return the plain content of a file, of this format.
 
     Raises:
-        ValueError: if it is too large, has too many lists and objects, is no object of JSON, has a
-            number that is none, or is of another format.
+        OtherFormat: if it is of another version.
+        ValueError: if it is too large, has too many lists and objects, is no object of JSON, or has
+            a number that is none.
         RecursionError: if it is nested too deeply.
     """
     if len(data) > MAX_BYTES:
@@ -248,8 +259,7 @@ def _checked(data: bytes) -> dict[str, Any]:
     content = json.loads(data, parse_constant=_refuse)
     if not isinstance(content, dict) or "format" not in content:
         raise ValueError("it does not say its format")
-    if content["format"] != FORMAT:
-        raise ValueError(f"its format is {content['format']!r}; this version reads {FORMAT}")
+    check_format(name, content["format"], FORMAT)
     return content
 
 

@@ -49,7 +49,10 @@ def test_it_is_read_as_it_was_written() -> None:
         (b"", "s.json is no score file"),
         (b"[]", "s.json is no score file"),
         (b'{"format": 1, "protocol": "hexabench-1"}', "it lacks 'agent'"),
-        (b'{"format": 9, "protocol": "hexabench-1"}', "its format is 9; this version reads 1"),
+        (
+            b'{"format": 9, "protocol": "hexabench-1"}',
+            "s.json has format 9; this version reads 1 alone",
+        ),
         (b'{"format": NaN}', "NaN is no number in JSON"),
         (b"[" * 100_000, "s.json is no score file"),
     ],

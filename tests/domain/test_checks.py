@@ -1,4 +1,4 @@
-"""A whole number that is none, or out of its range, is refused with what is valid."""
+"""Whole numbers and formats of files: what is not valid is refused with what is."""
 
 import json
 from pathlib import Path
@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from hexapods.domain.checks import check_whole, parse_number
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.checks import check_format, check_whole, parse_number
+from hexapods.domain.errors import InvalidInput, OtherFormat
 
 
 @pytest.mark.parametrize("value", [1, 5, 10_000])
@@ -42,3 +42,18 @@ NUMBERS = json.loads((Path(__file__).parents[1] / "cases" / "numbers.json").read
 def test_numbers_are_read_as_the_page_reads_them(case: dict[str, Any]) -> None:
     expected = case["text"] if case["value"] is None else case["value"]
     assert parse_number(case["text"], case["is_whole"]) == expected
+
+
+def test_the_format_that_is_read_is_accepted() -> None:
+    check_format("walk.json", 2, 2)
+    check_format("robot.json", "hexapods-robot-1", "hexapods-robot-1")
+
+
+@pytest.mark.parametrize("version", [1, 3, 2.0, True, "2", None, [2] * 1_000])
+def test_any_other_format_is_refused_with_what_to_do(version: object) -> None:
+    with pytest.raises(OtherFormat) as error:
+        check_format("walk.json", version, 2)
+    sentence = str(error.value)
+    assert sentence.startswith(f"walk.json has format {repr(version)[:40]}; this version reads 2 ")
+    assert "leaves the file as it is" in sentence
+    assert len(sentence) < 250

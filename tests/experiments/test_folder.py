@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
+from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, OtherFormat
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.folder import TRIALS, ResultNotStored, open_results
@@ -145,11 +145,11 @@ def test_a_damaged_line_is_named(damaged: bytes, folder: Path) -> None:
         b"milk\n",
         b"[]\n",
         b"{}\n",
-        b'{"format": 1, "versions": {}, "config": []}\n',
-        b'{"format": 1, "versions": 1, "config": {}}\n',
+        b'{"format": 2, "versions": {}, "config": []}\n',
+        b'{"format": 2, "versions": 1, "config": {}}\n',
     ],
 )
-def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
+def test_a_file_of_something_else_is_refused(head: bytes, folder: Path) -> None:
     (folder / TRIALS).write_bytes(head)
     assert "does not begin as results of an experiment do" in refusal(folder)
     assert (folder / TRIALS).read_bytes() == head
@@ -158,10 +158,20 @@ def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
 def test_results_of_another_version_are_refused(folder: Path) -> None:
     change_head(folder, lambda head: head["versions"].update(mujoco="3.3.7"))  # type: ignore[attr-defined]
     assert "has results of mujoco 3.3.7 instead of 4.0.0" in refusal(folder)
-    change_head(folder, lambda head: head.update(format=1))
-    assert "has results in format 1, and this version writes format 2" in refusal(folder)
-    change_head(folder, lambda head: head.update(format=3))
-    assert "has results in format 3, and this version writes format 2" in refusal(folder)
+
+
+@pytest.mark.parametrize("version", [1, 3, "2", None])
+def test_results_of_another_format_are_refused_and_left_as_they_are(
+    version: object, folder: Path
+) -> None:
+    """Also the end of a line that a killed process has not written to its end."""
+    change_head(folder, lambda head: head.update(format=version))
+    with (folder / TRIALS).open("ab") as file:
+        file.write(b'{"key": "left')
+    before = (folder / TRIALS).read_bytes()
+    sentence = refusal(folder, kind=OtherFormat)
+    assert f"{TRIALS} has format {version!r}; this version reads 2 alone" in sentence
+    assert (folder / TRIALS).read_bytes() == before
 
 
 def test_results_of_another_kind_are_refused(folder: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from hexapods.agents.q_table import QTable
 from hexapods.agents.table_rows import TableRows
 from hexapods.assembly import build_learner
-from hexapods.domain.errors import DamagedFile, TableMismatch
+from hexapods.domain.errors import DamagedFile, OtherFormat, TableMismatch
 from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.table_file import TableFile
 from hexapods.runs.tables import Checkpoint, snapshot, to_bytes
@@ -110,9 +110,10 @@ def test_values_out_of_order_are_refused() -> None:
         list(opened(to_bytes(Checkpoint(checkpoint.meta, arrays))).table.rows())
 
 
-def test_another_format_version_is_refused() -> None:
+@pytest.mark.parametrize("version", [1, 3])
+def test_another_format_version_is_refused(version: int) -> None:
     _, checkpoint = filled(2, 0.4)
-    meta = {**json.loads(json.dumps(dict(checkpoint.meta))), "format": 3}
+    meta = {**json.loads(json.dumps(dict(checkpoint.meta))), "format": version}
 
-    with pytest.raises(DamagedFile, match="it has format 3"):
+    with pytest.raises(OtherFormat, match=f"has format {version}; this version reads 2 alone"):
         opened(to_bytes(Checkpoint(meta, checkpoint.arrays)))

@@ -9,7 +9,7 @@ import pytest
 
 from app.features.tournaments.tournaments import MAX_ROBOTS_BYTES, MAX_TABLES_BYTES
 from hexapods.domain import robot_documents
-from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.errors import DamagedFile, InvalidInput, OtherFormat
 from hexapods.domain.robot import PRESETS, document_of, read_document, robot
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.rules import MAX_DRAWS, MAX_ENTRIES
@@ -81,7 +81,6 @@ def _of(path: str, value: Any) -> Callable[[Any], object]:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (_of("format", 2), "its format is 2; this version reads 1"),
         (lambda content: content.pop("format"), "does not say its format"),
         (lambda content: content.pop("secret"), "secret"),
         (_of("winner", 3), "winner"),
@@ -112,6 +111,12 @@ def test_what_is_no_tournament_is_refused(
 ) -> None:
     with pytest.raises(DamagedFile, match=rf"^it is no tournament that can be read: .*{message}"):
         read_file(_changed(tournament, change), "it")
+
+
+@pytest.mark.parametrize("version", [0, 2])
+def test_another_format_is_refused(tournament: TournamentFile, version: int) -> None:
+    with pytest.raises(OtherFormat, match=f"it has format {version}; this version reads 1 alone"):
+        read_file(_changed(tournament, _of("format", version)), "it")
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ from app.storage.untrusted_input import (
     check_moment,
 )
 from hexapods import __version__
+from hexapods.domain.checks import check_format
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
@@ -85,7 +86,6 @@ class _File(UntrustedInput, frozen=True):
 
 class _Head(msgspec.Struct):
     format: int
-    version: str = ""
 
 
 class _OnlyCurve(msgspec.Struct):
@@ -126,18 +126,15 @@ def read_run_json(
         agents: names of the registered agents.
 
     Raises:
-        DamagedFile: if it is malformed, inconsistent, or of another format version.
+        OtherFormat: if it is of another version.
+        DamagedFile: if it is malformed or inconsistent.
         InvalidInput: if its kind, agent, robot or gait is not supported here.
     """
     try:
         if len(data) > MAX_JSON_BYTES:
             raise ValueError("it is too long")
         head = msgspec.json.decode(data, type=_Head)
-        if head.format != FORMAT:
-            raise DamagedFile(
-                f"{label} has format {head.format}, of version {head.version[:40]!r}; this version "
-                f"({__version__}) reads {FORMAT} alone"
-            )
+        check_format(label, head.format, FORMAT)
         # Of all that is in it only the curve may be long.
         curve_json = bytes(msgspec.json.decode(data, type=_OnlyCurve).curve)
         if len(data) - len(curve_json) > _MAX_RUN_BYTES:

@@ -23,9 +23,10 @@ from app.storage.untrusted_input import (
     UntrustedInput,
     check_json,
 )
-from hexapods.domain.errors import DamagedFile
+from hexapods.domain.checks import check_format
+from hexapods.domain.errors import DamagedFile, OtherFormat
 from hexapods.domain.text import is_formula
-from hexapods.experiments.config import SUMMARY, ExperimentConfig
+from hexapods.experiments.config import SUMMARY, SUMMARY_FORMAT, ExperimentConfig
 
 TRIALS = "trials.json"
 _REPORT_FILE = re.compile(
@@ -63,6 +64,12 @@ class _Cost(msgspec.Struct):
     wall_s: Seconds
 
 
+class _Head(msgspec.Struct):
+    """Version of a summary's format."""
+
+    format: int
+
+
 class _Summary(msgspec.Struct):
     """Fields of a summary that the server and the page rely on; others are not validated."""
 
@@ -72,7 +79,7 @@ class _Summary(msgspec.Struct):
     settings: list[Any]
     claims: list[Any]
     story: list[Any]
-    parameters: list[Name] | UnsetType = UNSET  # since settings are declared by agents
+    parameters: list[Name]
 
 
 def trials_json(run_id: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
@@ -147,6 +154,7 @@ def check_report_files(
         label: name of the archive for error messages.
 
     Raises:
+        OtherFormat: if the summary is of another version.
         DamagedFile: if a file is unexpected or malformed.
     """
     for name, data in files.items():
@@ -160,9 +168,13 @@ def check_report_files(
     if SUMMARY not in files:
         return
     try:
+        head = msgspec.json.decode(files[SUMMARY], type=_Head)
+        check_format(f"{SUMMARY} of {label}", head.format, SUMMARY_FORMAT)
         summary = msgspec.json.decode(files[SUMMARY], type=_Summary)
         if summary.experiment != run.config.experiment:
             raise ValueError("it is of another experiment")
+    except OtherFormat:
+        raise
     except (ValueError, RecursionError) as error:
         raise DamagedFile(f"{SUMMARY} of {label} is no summary ({error})") from error
 

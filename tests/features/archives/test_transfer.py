@@ -350,7 +350,8 @@ def _shorter(content: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "names"),
     [
-        (_set("format", 3), "format 3"),
+        (_set("format", 1), "run.json of run.zip has format 1; this version reads 2 alone"),
+        (_set("format", 3), "run.json of run.zip has format 3; this version reads 2 alone"),
         (_set("format", "1"), "run.json"),
         (_set("more", 1), "unknown field `more`"),
         (_set("more", 1, "run"), "unknown field `more`"),

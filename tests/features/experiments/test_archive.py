@@ -147,6 +147,8 @@ def test_report_files_must_match_their_names(source: RunStore) -> None:
     for changed, names in (
         ({"summary_json": b"{}"}, "no summary"),
         ({"summary_json": summary_with(data, cost={"wall_s": "long"})}, "no summary"),
+        ({"summary_json": summary_with(data, format=1)}, "has format 1; this version reads 2"),
+        ({"summary_json": summary_with(data, format=3)}, "has format 3; this version reads 2"),
         ({"trials_csv": b"key,failure\r\na,=1+1\r\n"}, "takes for a formula"),
         ({"trials_csv": b"key,failure\r\na,\xff\r\n"}, "no table"),
         ({"summary_json": b"[" * 100_000}, "no summary"),

@@ -185,7 +185,7 @@ def test_foreign_results_folder_is_refused(tmp_path: Path) -> None:
     assert "mine is not empty, and has no results in it" in sentence
     (tmp_path / "mine" / TRIALS).write_text('{"format": 9, "versions": {}, "config": {}}\n')
     sentence = refusal(*SWEEP, "--out", "mine", folder=tmp_path, run=in_process)
-    assert "results in format 9" in sentence
+    assert f"{TRIALS} has format 9; this version reads 2 alone" in sentence
 
 
 def test_league_compares_agents_in_worlds(tmp_path: Path) -> None:

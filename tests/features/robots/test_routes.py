@@ -163,7 +163,7 @@ def test_options_list_stored_robots_beside_those_that_are_built_in(
         (b'{"robot": {"preset": "dog", "femur_m": 0.01, "tibia_m": 0.01}}', "leg 1"),
         (b'{"format": "hexapods-robot-1", "robot": {}}', "canonical"),
         (b'{"format":"hexapods-robot-1","robot":{}}', "legs"),
-        (b'{"format":"hexapods-robot-2","robot":{}}', "format"),
+        (b'{"format":"hexapods-robot-2","robot":{}}', "has format 'hexapods-robot-2'"),
     ],
 )
 def test_what_is_no_robot_is_refused_and_nothing_kept(api: Api, given: bytes, word: str) -> None:
