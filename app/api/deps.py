@@ -130,21 +130,22 @@ class StartRequest(NamedTuple):
         return services.idempotency.runs(self.key, request, create)
 
 
-def _services(request: Request) -> Services:
+# These are coroutines, as FastAPI would call functions in another thread, which takes longer.
+async def _services(request: Request) -> Services:
     services: Services = request.app.state.services
     return services
 
 
-def _stage(request: Request) -> SharedStage:
+async def _stage(request: Request) -> SharedStage:
     return stage_of(request.scope)
 
 
-def _role(request: Request) -> Role:
+async def _role(request: Request) -> Role:
     role: Role = request.state.role
     return role
 
 
-def _identity(request: Request) -> Identity | None:
+async def _identity(request: Request) -> Identity | None:
     identity: Identity | None = request.state.identity
     return identity
 

@@ -108,7 +108,7 @@ class SegmentKey(NamedTuple):
     number: int
 
 
-def _segment_key(
+async def _segment_key(
     level: Annotated[int, Path(ge=LOWEST_LEVEL, le=HIGHEST_LEVEL, description=VALID["level"])],
     number: Annotated[int, Path(ge=0, lt=1 << 40, description=VALID["number"])],
 ) -> SegmentKey:

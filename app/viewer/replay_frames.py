@@ -1,7 +1,7 @@
 """Replays of stored runs as frames, encoded once for everybody who watches them."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -17,10 +17,11 @@ from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment
 
 _CACHE_BYTES = 32 << 20
+_SCENE = "scene"
 
 
 class ReplayFrames:
-    """Encodes replays, one request at a time, and keeps the newest segments. Thread-safe.
+    """Encodes replays one at a time, and keeps the newest scenes and segments. Thread-safe.
 
     `hexapods.drawing.replay_encoding` has the form of an encoding.
 
@@ -33,7 +34,7 @@ class ReplayFrames:
         self._replays = replays
         self._stopping = stopping or Stopping()
         self._lock = threading.Lock()
-        self._segments = BytesCache(_CACHE_BYTES)
+        self._encodings = BytesCache(_CACHE_BYTES)
 
     def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> dict[str, Any]:
         """Return what a page needs to play a run, in plain types: see `ReplayView` of the API.
@@ -53,9 +54,14 @@ class ReplayFrames:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
             Busy: if the server stops, as in the methods below.
         """
+        version = self._replays.version(run_id, ghost_id)
+        if (cached := self._encodings.get((version, _SCENE))) is not None:
+            return cached
         replay = self._replays.get(run_id, "paper", ghost_id)
-        with self._encoding():
-            return encode_scene(replay, self._stopping.check)
+        key = (replay.version, _SCENE)
+        return self._encoded_once(
+            key, replay.is_complete, lambda: encode_scene(replay, self._stopping.check)
+        )
 
     def moment(
         self, run_id: str, clock: Clock, time_s: float, ghost_id: str | None = None
@@ -109,7 +115,7 @@ class ReplayFrames:
             InvalidInput, Conflict: see `Replays.get`.
         """
         version = self._replays.version(run_id, ghost_id)
-        if (cached := self._segments.get((version, clock, level, number))) is not None:
+        if (cached := self._encodings.get((version, clock, level, number))) is not None:
             return cached
         replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
@@ -117,14 +123,11 @@ class ReplayFrames:
             times_s = replay.segment_times_s(level, number)
         except NoSuchSegment as error:
             raise NotFound(str(error)) from error
-        with self._encoding():
-            # Another request for it may have been encoded while this one waited.
-            if (cached := self._segments.get(key)) is not None:
-                return cached
-            encoded = encode_frames(replay, times_s, self._stopping.check)
-            if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
-                self._segments.put(key, encoded)
-        return encoded
+        return self._encoded_once(
+            key,
+            replay.is_complete or len(times_s) == SEGMENT_FRAMES,
+            lambda: encode_frames(replay, times_s, self._stopping.check),
+        )
 
     def encoded(self, run_id: str, clock: Clock) -> EncodedReplay:
         """Return all frames of a run, each encoded when it is asked for.
@@ -141,6 +144,17 @@ class ReplayFrames:
             lambda: self.scene(run_id),
             lambda level, number: self.segment(run_id, clock, level, number),
         )
+
+    def _encoded_once(self, key: Hashable, is_final: bool, encode: Callable[[], bytes]) -> bytes:
+        """Return an encoding that is kept if it is final, of which a later one is the same."""
+        with self._encoding():
+            # Another request for it may have been encoded while this one waited.
+            if (cached := self._encodings.get(key)) is not None:
+                return cached
+            encoded = encode()
+            if is_final:
+                self._encodings.put(key, encoded)
+        return encoded
 
     @contextmanager
     def _encoding(self) -> Iterator[None]:

@@ -101,6 +101,15 @@ def test_segments_are_encoded_once_until_the_run_changes(parts: StageParts) -> N
     assert frames.segment(run.id, "paper", 0, 0) is not first
 
 
+def test_a_scene_is_encoded_once_until_the_run_changes(parts: StageParts) -> None:
+    run, frames = parts.finished_race(LANES), frames_of(parts)
+    first = frames.scene(run.id)
+
+    assert frames.scene(run.id) is first
+    parts.store.change(run.id, ["finished"], "stopped")
+    assert frames.scene(run.id) is not first
+
+
 def test_a_race_under_way_is_encoded_as_far_as_it_is(parts: StageParts) -> None:
     run, advance = parts.running_race(LANES)
     for _ in range(12):

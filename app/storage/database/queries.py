@@ -6,7 +6,7 @@ value that cannot be decoded would fail the whole query, so `rows` decodes each 
 
 import hashlib
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sqlalchemy import (
@@ -16,6 +16,7 @@ from sqlalchemy import (
     LargeBinary,
     Select,
     String,
+    bindparam,
     cast,
     func,
     select,
@@ -30,12 +31,18 @@ Row = dict[str, Any]
 
 MAX_CELL_CHARS = 4_000_000
 """Maximum of characters read of a column of a run; a longer one counts as damaged."""
-_PUBLIC_ID = re.compile(r"(?!damaged-)[0-9A-Za-z_-]{1,64}", re.ASCII)
+_DAMAGED = "damaged-"
+"""Beginning of the public id of a row whose stored id is not URL-safe."""
+_PUBLIC_ID = re.compile(rf"(?!{_DAMAGED})[0-9A-Za-z_-]{{1,64}}", re.ASCII)
 
 
-def fetch_rows(connection: Connection, statement: Executable) -> Sequence[Row]:
-    """Execute a statement, and return its rows as dictionaries."""
-    return [{**row} for row in connection.execute(statement).mappings()]
+def fetch_rows(
+    connection: Connection, statement: Executable, parameters: Mapping[str, Any] | None = None
+) -> Sequence[Row]:
+    """Execute a statement with values of its parameters, and return its rows as dictionaries."""
+    result = connection.execute(statement, parameters)
+    names = tuple(result.keys())
+    return [dict(zip(names, row, strict=True)) for row in result]
 
 
 def _undecoded(column: ColumnElement[Any], name: str) -> ColumnElement[Any]:
@@ -60,6 +67,10 @@ def select_runs() -> Select[Any]:
     return select(*RAW_RUN)
 
 
+_RUN = select_runs().where(RUNS.c.id == bindparam("run_id"))
+"""One statement for all ids: its cache key is computed once, which takes longer than the query."""
+
+
 def fetch_run_row(connection: Connection, run_id: str, for_update: bool = False) -> Row:
     """Return the undecoded row of a run.
 
@@ -71,8 +82,11 @@ def fetch_run_row(connection: Connection, run_id: str, for_update: bool = False)
     Raises:
         NotFound: if there is no such run.
     """
-    query = select_runs().where(has_public_id(connection, run_id))
-    rows = fetch_rows(connection, query.with_for_update() if for_update else query)
+    query, parameters = _RUN, {"run_id": run_id}
+    if run_id.startswith(_DAMAGED):
+        query, parameters = select_runs().where(has_public_id(connection, run_id)), {}
+    query = query.with_for_update() if for_update else query
+    rows = fetch_rows(connection, query, parameters)
     if not rows:
         raise NotFound(f"there is no run {run_id!r} (any more)")
     return rows[0]
@@ -82,7 +96,7 @@ def public_id(stored: object) -> str:
     """Return the id of a row as used outside of the database: a digest if it is not URL-safe."""
     if isinstance(stored, str) and _PUBLIC_ID.fullmatch(stored):
         return stored
-    return f"damaged-{hashlib.sha256(_bytes(stored)).hexdigest()[:16]}"
+    return f"{_DAMAGED}{hashlib.sha256(_bytes(stored)).hexdigest()[:16]}"
 
 
 def has_public_id(connection: Connection, run_id: str) -> ColumnElement[bool]:
@@ -105,7 +119,7 @@ def sorts_after(connection: Connection, run_id: str) -> ColumnElement[bool]:
 
 def _stored_id(connection: Connection, run_id: str) -> bytes | None:
     """Return the stored id whose digest is this public id; None if the id is not a digest."""
-    if not run_id.startswith("damaged-"):
+    if not run_id.startswith(_DAMAGED):
         return None
     stored = connection.execute(select(type_coerce(RUNS.c.id, String))).scalars()
     return next((_bytes(stored_id) for stored_id in stored if public_id(stored_id) == run_id), None)
