@@ -112,7 +112,7 @@ class Phone:
                 task.cancel()
             await asyncio.gather(*following, return_exceptions=True)
             await self._client.aclose()
-        own = next((one for one in results["cards"][0]["entries"] if one["is_own"]), None)
+        own = next((entry for entry in results["cards"][0]["entries"] if entry["is_own"]), None)
         me = view["me"]
         is_refused = "detail" in kept and "already" not in kept["detail"]
         return {
@@ -178,7 +178,7 @@ class Phone:
         """Ask for the own result whenever an event tells of a change, until it is there."""
         while True:
             answer = await self.call("results", "GET", f"{path}/results?card={_CARD}")
-            own = next((one for one in answer["cards"][0]["entries"] if one["is_own"]), None)
+            own = next((entry for entry in answer["cards"][0]["entries"] if entry["is_own"]), None)
             if own is not None and own["run"] is not None and own["run"]["state"] == "finished":
                 return
             self._changed.clear()
@@ -296,7 +296,7 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
         (found,) = (await teacher.call("GET", f"/api/v1/rooms/{code}/results?card={_CARD}"))[
             "cards"
         ]
-        run_id = next(one["run"]["id"] for one in found["entries"] if one["run"])
+        run_id = next(entry["run"]["id"] for entry in found["entries"] if entry["run"])
         await teacher.call("PUT", f"/api/v1/rooms/{code}/spotlight", {"run_id": run_id})
         showing.append(asyncio.create_task(teacher.keep_in_motion(code)))
     await asyncio.sleep(5.0)
@@ -314,7 +314,8 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
     for code in codes:
         await teacher.call("POST", f"/api/v1/rooms/{code}/end")
     rates = [
-        sum(lit_s <= one < lit_s + watched_s for one in p.frames_s) / watched_s for p in phones
+        sum(lit_s <= frame_ < lit_s + watched_s for frame_ in p.frames_s) / watched_s
+        for p in phones
     ]
     took: defaultdict[str, list[float]] = defaultdict(list)
     for phone in phones:
@@ -331,7 +332,7 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
         "frames_per_s": {
             "median": round(statistics.median(rates), 1),
             "lowest": round(min(rates), 1),
-            "below_25": sum(one < 25 for one in rates),
+            "below_25": sum(rate < 25 for rate in rates),
         },
         "frames_per_s_while_they_come": round(
             statistics.median(_steady(p, lit_s, watched_s) for p in phones), 1
@@ -352,9 +353,9 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
 
 def _steady(phone: Phone, from_s: float, for_s: float) -> float:
     """Return the frames a second without the gaps of a second or more, as after a drop."""
-    times = [one for one in phone.frames_s if from_s <= one < from_s + for_s]
+    times = [frame_ for frame_ in phone.frames_s if from_s <= frame_ < from_s + for_s]
     gaps = [b - a for a, b in pairwise([from_s, *times, from_s + for_s])]
-    return len(times) / max(1e-9, sum(one for one in gaps if one < 1.0))
+    return len(times) / max(1e-9, sum(gap for gap in gaps if gap < 1.0))
 
 
 async def _all_finished(phones: list[Phone]) -> None:

@@ -70,7 +70,7 @@ def test_they_are_recorded_analysed_drawn_and_exported(name: str) -> None:
     assert figures.effort is not None
     assert figures.effort.energy_j > 0
     assert figures.effort.largest_torque_nm <= figures.effort.torque_limit_nm * 1.001
-    assert [one.leg for one in figures.legs] == list(range(1, len(legs) + 1))
+    assert [leg.leg for leg in figures.legs] == list(range(1, len(legs) + 1))
     assert 0.3 < figures.duty_factor < 0.95
     assert figures.mass_kg == pytest.approx(sum(link.mass_kg for link in model.links))
 

@@ -61,7 +61,7 @@ def test_worlds_robots_and_gaits_are_given_in_any_form() -> None:
 def test_records_come_as_they_happen() -> None:
     records = list(hx.iter_train("linear-model", record=True, evaluate_every=30, **QUICK))
     steps = [one for one in records if isinstance(one, StepTaken)]
-    assert [one.step for one in steps] == list(range(1, 61))
+    assert [step.step for step in steps] == list(range(1, 61))
     assert steps[0].motion is not None
     seen: list[object] = []
     done = hx.train("linear-model", evaluate_every=30, on_record=seen.append, **QUICK)

@@ -99,7 +99,7 @@ def test_errors_and_records_and_disturbances_are_there() -> None:
         *(kind.__name__ for kind in KINDS.values()),
     }
     steps = hx.iter_train(steps=1, simulator="kinematic")
-    assert {type(one) for one in steps} <= {getattr(hx, name) for name in dir(hx)}
+    assert {type(step) for step in steps} <= {getattr(hx, name) for name in dir(hx)}
 
 
 def _is_class(name: str, base: type) -> bool:
@@ -133,7 +133,7 @@ def test_signatures_have_all_fields_of_the_configs(
         *("table", "changes", "checkpoint", "on_record", "record", "on_step"),
         *("folder", "workers", "on_trial"),
     }
-    assert named - own == {one.name for one in fields(config)} - without
+    assert named - own == {field.name for field in fields(config)} - without
 
 
 def test_type_checkers_know_the_arguments() -> None:

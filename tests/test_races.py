@@ -19,9 +19,9 @@ def test_the_race_is_that_of_its_training(training: hx.Training) -> None:
     race = hx.race([training, "greedy", hx.lane("look-ahead", depth=1)], steps=20)
     assert (race.config.gait, race.config.simulator) == ("left-right-vertical", "kinematic")
     assert [one.agent for one in race.config.lanes] == ["q-learning", "greedy", "look-ahead"]
-    ranks = [one.rank for one in race.standings]
+    ranks = [standing.rank for standing in race.standings]
     assert ranks == sorted(ranks)  # type: ignore[type-var]
-    assert {one.lane for one in race.standings} == {0, 1, 2}
+    assert {standing.lane for standing in race.standings} == {0, 1, 2}
     assert all(len(lane.steps) == 20 for lane in race.recording)
     assert race.standings_under("wall") != race.standings
     assert repr(race).startswith("<Race over 20 steps: ")
@@ -60,7 +60,7 @@ def test_steps_are_told() -> None:
 
 def test_a_race_in_which_all_fail_has_no_ranking() -> None:
     race = hx.race(["tests.own_agents:Clumsy", "tests.own_agents:Clumsy"], **QUICK)
-    assert [one.rank for one in race.standings] == [None, None]
+    assert [standing.rank for standing in race.standings] == [None, None]
     assert "failed: its agent failed: RuntimeError: I tripped" in repr(race)
 
 

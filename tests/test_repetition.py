@@ -25,12 +25,12 @@ def test_each_setting_has_its_mean_and_goes_on_where_it_ended(tmp_path: Path) ->
     seen: list[object] = []
     done = hx.experiment("sweep", folder=tmp_path / "kept", on_trial=seen.append, **SWEEP)
     assert len(seen) == len(done.trials) == 5
-    assert [(one.name, one.seeds) for one in done.settings] == [
+    assert [(setting.name, setting.seeds) for setting in done.settings] == [
         ("Greedy", 1),
         ("Q-learning, 20 steps, α 0.1", 2),
         ("Q-learning, 20 steps, α 0.3", 2),
     ]
-    assert all(one.iqm_m is not None for one in done.settings)
+    assert all(setting.iqm_m is not None for setting in done.settings)
     again = hx.experiment("sweep", folder=tmp_path / "kept", on_trial=seen.append, **SWEEP)
     assert len(seen) == 5
     assert again.settings == done.settings

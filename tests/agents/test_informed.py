@@ -69,7 +69,7 @@ def test_prediction_does_not_depend_on_how_many_are_made_at_once() -> None:
     model.learn(offsets, actions, rng.normal(0, 0.01, len(actions)))
     together, _ = model.predict(offsets, actions)
 
-    assert together.tolist() == [model.predict(offsets, one[None])[0][0] for one in actions]
+    assert together.tolist() == [model.predict(offsets, action[None])[0][0] for action in actions]
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ def test_a_creature_is_trained_raced_explained_and_exported(name: str, api: Api)
     table = api.get(f"/trainings/{trained['id']}/table", params={"step": 30})
     assert table["pairs"] == explained["pairs"]
     figures = api.get(f"/runs/{race['id']}/gait")["lanes"][0]["figures"]
-    assert [one["leg"] for one in figures["legs"]] == list(range(1, len(made.legs) + 1))
+    assert [leg["leg"] for leg in figures["legs"]] == list(range(1, len(made.legs) + 1))
     head = api.call("GET", f"/runs/{race['id']}/trajectory").text.split("\r\n")[0]
     assert f"leg{len(made.legs)}_tibia_rad" in head
     for path in (f"/runs/{race['id']}/mcap", f"/runs/{race['id']}/page"):

@@ -38,8 +38,11 @@ def test_practice_for_a_race_is_in_the_world_of_its_start(api: Api) -> None:
     training = api.get(f"/trainings/{race['waiting_for'][0]}")
     api.stop(training, race)
 
-    assert [one["kind"] for one in race["config"]["disturbances"]] == ["slope", "limp"]
-    assert [one["kind"] for one in training["config"]["disturbances"]] == ["slope"]
+    assert [disturbance["kind"] for disturbance in race["config"]["disturbances"]] == [
+        "slope",
+        "limp",
+    ]
+    assert [disturbance["kind"] for disturbance in training["config"]["disturbances"]] == ["slope"]
 
 
 def disturb(api: Api, run: dict[str, Any], body: Any) -> Any:
@@ -249,7 +252,7 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     assert worlds["limp-pair"]["disturbances"] == [{**LIMP, "at_step": 0}]
     assert worlds["slope"]["description"] == "The track rises by 8°."
 
-    kinds = {one["name"]: one for one in options["disturbances"]}
+    kinds = {disturbance["name"]: disturbance for disturbance in options["disturbances"]}
     assert kinds["limp"]["simulators"] == ["mujoco"]
     assert kinds["sensor-noise"]["simulators"] == ["mujoco", "kinematic"]
     legs = kinds["limp"]["fields"]["legs"]
@@ -264,7 +267,7 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     assert (kinds["weak"]["size"], kinds["weak"]["nothing"]) == ("torque_share", 1)
     assert (kinds["friction"]["size"], kinds["friction"]["nothing"]) == ("value", "friction")
     assert (kinds["limp"]["size"], kinds["patch"]["nothing"]) == (None, None)
-    built = {one["name"]: one["built"] for one in options["robots"]}
+    built = {robot["name"]: robot["built"] for robot in options["robots"]}
     assert (built["stiff"], built["slippery"]) == ({"friction": 1}, {"friction": 0.1})
     stuck = kinds["stuck"]["fields"]
     assert stuck["joint"]["choices"] == ["coxa", "femur", "tibia"]
@@ -273,7 +276,7 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     assert stuck["angle_rad"]["ranges"]["ranges"]["tibia"] == [-2.8, 0]
     assert slope["degrees"]["ranges"] is None
 
-    searching = {one["name"] for one in options["agents"] if one["searches"]}
+    searching = {agent["name"] for agent in options["agents"] if agent["searches"]}
     assert {"greedy", "beam", "mcts"} <= searching
     assert not searching & {"q-learning", "linear-model"}
     knows = options["settings"]["plans_with"]

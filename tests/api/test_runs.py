@@ -43,7 +43,7 @@ def test_several_curves_are_answered_at_once_with_few_points(
     often = api.finished(api.train(steps=100, evaluate_every=2))
     never = api.finished(api.train(steps=5, evaluate_every=0))
     query = "&".join(f"id={one}" for one in (trained["id"], often["id"], never["id"], "none"))
-    curves = {one["id"]: one for one in api.get(f"/runs/curves?{query}")["curves"]}
+    curves = {curve["id"]: curve for curve in api.get(f"/runs/curves?{query}")["curves"]}
     whole = [api.get(f"/trainings/{run['id']}/curve")["evaluations"] for run in (trained, often)]
     assert curves.keys() == {trained["id"], often["id"]}
     few, many = curves[trained["id"]], curves[often["id"]]

@@ -282,7 +282,7 @@ class Dashboard:
         self.page.emulate_media(color_scheme="light")
         found = self.violations()
         self.page.emulate_media(color_scheme="dark")
-        return found + [f"dark: {one}" for one in self.violations(*_RULES_OF_COLORS)]
+        return found + [f"dark: {violation}" for violation in self.violations(*_RULES_OF_COLORS)]
 
     def small_targets(self, least_px: int) -> list[str]:
         """Return the controls that are smaller than they may be, in all that can be unfolded."""

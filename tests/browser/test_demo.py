@@ -41,7 +41,7 @@ def test_a_stranger_trains_and_is_told_what_is_left(dashboard: Dashboard, tmp_pa
         expect(alert).to_contain_text("You have 100 of 500 steps an hour left, and this takes 200")
         expect(alert).to_contain_text(re.compile(r"choose fewer, or start it in \d+ min"))
         assert dashboard.violations_in_both_themes() == []
-        assert [one.split()[0] for one in dashboard.complaints] == ["429"]
+        assert [complaint.split()[0] for complaint in dashboard.complaints] == ["429"]
         dashboard.complaints.clear()
 
         own_runs_alone_are_changed(dashboard, of_other["id"])

@@ -23,7 +23,7 @@ IDEAL = urlencode({"steps": 100_000, "pace": 8, "simulator": "kinematic"})
 def changes(dashboard: Dashboard) -> list[dict[str, Any]]:
     """Return what has happened to the newest training."""
     training = dashboard.get("/api/v1/trainings")["items"][0]
-    return [one["disturbance"] for one in training["changes"]]
+    return [change["disturbance"] for change in training["changes"]]
 
 
 def disturbances_now(dashboard: Dashboard) -> Locator:
@@ -79,7 +79,7 @@ def test_a_leg_is_broken_while_a_robot_practises(
         dashboard.button(f"Leg {number}, limp").click()
     expect(now).to_contain_text("The robot is as it was built")
     expect(curve).to_have_accessible_name(walks)
-    kinds = Counter(one["kind"] for one in changes(dashboard))
+    kinds = Counter(change["kind"] for change in changes(dashboard))
     assert kinds == {"limp": 2, "stuck": 1, "slope": 3, "friction": 2, "repair": 3}
     dashboard.button("Stop").click()
     page.get_by_role("link", name="Runs").click()

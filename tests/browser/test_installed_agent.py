@@ -148,7 +148,9 @@ def test_a_sweep_tries_its_values(client: httpx2.Client) -> None:
     assert run["config"]["settings"]["optimism"] == [0, 1]
     _until(client, run, "finished")
     summary = client.get(f"/api/v1/experiments/{run['id']}/summary").json()
-    tried = [one["optimism"] for one in summary["settings"] if one["agent"] == "wanderer"]
+    tried = [
+        setting["optimism"] for setting in summary["settings"] if setting["agent"] == "wanderer"
+    ]
     assert tried == [0, 1]
 
 

@@ -45,7 +45,7 @@ def changed(dashboard: Dashboard) -> dict[str, Any]:
     """Return the values to which the settings of the only training were changed last."""
     [training] = trainings(dashboard)
     settings = [change.get("settings", {}) for change in training["changes"]]
-    return {name: value for one in settings for name, value in one.items()}
+    return {name: value for setting in settings for name, value in setting.items()}
 
 
 def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, server: Serving) -> None:

@@ -243,7 +243,7 @@ def stands_still_and_ends(teacher: RoomPage, projector: RoomPage, pupil: RoomPag
     pupil.sees("The teacher has stopped the class for a moment")
     stop = projector.page.get_by_text("Stop. Look to the front.")
     expect(stop).to_be_visible()
-    assert not [one for one in small_texts(projector.page, STOP_PX) if "Stop" in one]
+    assert not [small for small in small_texts(projector.page, STOP_PX) if "Stop" in small]
     is_read_from_afar(projector)
     is_accessible(projector, is_touched=False)
     teacher.press("Let them go on")

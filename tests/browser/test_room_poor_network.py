@@ -105,10 +105,10 @@ def test_nobody_loses_anything_on_a_poor_network(flat_browser: Browser, tmp_path
         results = api.get(f"rooms/{code}/results").json()["cards"]
         view = api.get(f"rooms/{code}").json()
         assert view["participants"] == PUPILS
-        assert [one["name"] for one in view["people"]] == [
+        assert [person["name"] for person in view["people"]] == [
             phone.who[0] for phone in sorted(phones, key=lambda phone: phone.who[1])
         ]
-        assert [one["prediction"] for one in results[0]["entries"]] == [
+        assert [entry["prediction"] for entry in results[0]["entries"]] == [
             next(n / 10 for n, phone in enumerate(phones) if phone.who[1] == seed)
             for seed in range(PUPILS)
         ]

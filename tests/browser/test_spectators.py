@@ -134,6 +134,8 @@ def try_settings_until_refused(dashboard: Dashboard) -> None:
         expect(alert.or_(answered).first).to_be_visible()
         page.wait_for_timeout(500)
     expect(alert).to_be_visible()
-    assert [one for one in dashboard.complaints if not one.startswith("429 ")] == []
+    assert [
+        complaint for complaint in dashboard.complaints if not complaint.startswith("429 ")
+    ] == []
     dashboard.complaints.clear()
     assert dashboard.violations() == []

@@ -266,7 +266,10 @@ def test_worlds_and_disturbances_are_options(tmp_path: Path) -> None:
     options = ("--world", "slope", "--disturb", "limp:legs=1,4:at=2", "--steps", "4")
     printed = output("race", *GAIT, *options, "--lane", "greedy", folder=tmp_path)
 
-    assert [one["kind"] for one in printed["config"]["disturbances"]] == ["slope", "limp"]
+    assert [disturbance["kind"] for disturbance in printed["config"]["disturbances"]] == [
+        "slope",
+        "limp",
+    ]
     assert printed["result"]["lanes"][0]["fell_at_step"] is None
     assert abs(printed["result"]["lanes"][0]["heading_deg"]) < 45
     assert printed["config"]["lanes"][0]["plans_with"] is None  # as it was given

@@ -74,7 +74,7 @@ def test_of_some_sizes_nothing_happens(text: str, robot: str, expected: bool) ->
 
 def test_every_declared_size_is_a_field() -> None:
     for kind in KINDS.values():
-        names = {one.name for one in fields(kind)}
+        names = {field.name for field in fields(kind)}
         assert kind.size is None or kind.size in names
         assert {*kind.ranges, *(one.field for one in kind.ranges.values())} <= names
 

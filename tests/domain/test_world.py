@@ -226,6 +226,6 @@ def test_a_world_is_made_of_disturbances(given: Any) -> None:
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['happens']} in {case['step']}")
 def test_what_holds_in_a_step_is_what_the_page_says(case: dict[str, Any]) -> None:
     now = World(tuple(map(parse_disturbance, case["happens"]))).as_of(case["step"])
-    parts = [part for one in now.disturbances for part in one.parts().values()]
+    parts = [part for disturbance in now.disturbances for part in disturbance.parts().values()]
     expected = [as_text(parse_disturbance(text)) for text in case["holds"]]
     assert sorted(map(as_text, parts)) == sorted(expected)

@@ -87,7 +87,7 @@ def test_lost_legs_of_a_ghost_are_missing(parts: StageParts) -> None:
             for name, value in shown(answer["frames"], arrays).items()
             if name.endswith(" batched_scales") and value is not None
         ]
-        hidden.append(sum(int((one == 0).sum()) for one in scales))
+        hidden.append(sum(int((scale == 0).sum()) for scale in scales))
     assert hidden[0] == 0
     assert hidden[1] >= 6, "three links of each of two legs"
 

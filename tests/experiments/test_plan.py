@@ -60,8 +60,10 @@ def test_figure4_practises_the_steps_of_its_blocks_in_one_go_too() -> None:
     learners = [one for one in laid_out.settings if one.role == "learner"]
     in_blocks, in_one_go = learners[:4], learners[4:]
 
-    assert {one.trial.blocks for one in in_blocks} == {8}
-    assert [one.training.agent for one in in_one_go] == [one.training.agent for one in in_blocks]
+    assert {block_line.trial.blocks for block_line in in_blocks} == {8}
+    assert [block_line.training.agent for block_line in in_one_go] == [
+        block_line.training.agent for block_line in in_blocks
+    ]
     for one, blocks in zip(in_one_go, in_blocks, strict=True):
         assert (one.trial.blocks, one.training.steps) == (1, 2000)
         assert list(one.walks_after) == list(blocks.walks_after) == list(range(250, 2001, 250))

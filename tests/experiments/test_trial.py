@@ -66,14 +66,14 @@ def test_a_trial_gives_the_same_result_in_another_process() -> None:
 def test_a_result_is_the_same_after_json() -> None:
     walked = run_trial(TrialConfig(training=practice(steps=60)))
     (timed,) = [
-        one
-        for one in trials(
+        trial
+        for trial in trials(
             "table1",
             seeds=1,
             observations=("measured",),
             robots=experiment_config("sweep", {}).robots,
         )
-        if one.config.must_be_alone
+        if trial.config.must_be_alone
     ]
     for result in (walked, run_trial(timed.config), TrialResult(failure="it fell")):
         assert TrialResult.from_json(json.loads(json.dumps(result.as_json()))) == result
@@ -151,8 +151,8 @@ def test_evaluations_on_the_way_are_those_of_a_training() -> None:
     training = practice(steps=60, seed=5)
     learner = build_learner(replace(training, evaluate_every=20))
     records = list(train(learner, replace(training, evaluate_every=20)))
-    curve = {one.step: one.distance_m for one in records if isinstance(one, Evaluated)}
-    rewards = [one.reward_m for one in records if isinstance(one, StepTaken)]
+    curve = {record.step: record.distance_m for record in records if isinstance(record, Evaluated)}
+    rewards = [record.reward_m for record in records if isinstance(record, StepTaken)]
 
     result = run_trial(
         TrialConfig(training=training, evaluations=(0, 20, 40, 60), earning_steps=20)

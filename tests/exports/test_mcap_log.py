@@ -81,14 +81,14 @@ def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Me
         motions = [lane.motion(index) for index in range(6)]
         recorded = np.concatenate([lane.start_qpos[None], *(motion.qpos for motion in motions)])
         assert [joint.name for joint in states[0].joints] == names
-        written = np.array([[joint.position for joint in one.joints] for one in states])
+        written = np.array([[joint.position for joint in state.joints] for state in states])
         assert np.array_equal(written, recorded[:, 7:].astype(float))
         times = [
             start + t
             for start, motion in zip(lane.starts_s(step_s, "paper"), motions, strict=True)
             for t in motion.time_s.tolist()
         ]
-        assert [seconds(one.timestamp) for one in states] == pytest.approx([0, *times])
+        assert [seconds(state.timestamp) for state in states] == pytest.approx([0, *times])
 
 
 def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages: Messages) -> None:
@@ -96,7 +96,7 @@ def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages
     last = [
         one for one in messages["/tf"] if one.transforms[0].child_frame_id.startswith("lane1/")
     ][-1]
-    above = {one.child_frame_id: one for one in last.transforms}
+    above = {transform.child_frame_id: transform for transform in last.transforms}
     pose = lane.motion(5).qpos[-1:].astype(float)
 
     def place_of(frame: str) -> tuple[Any, Any]:

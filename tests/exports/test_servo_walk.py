@@ -89,7 +89,7 @@ def test_servos_that_can_follow_are_not_slowed_down(raced: RecordedWalks) -> Non
     for head in ("speed_deg_s: 9000", ""):
         walk = servo_walk(raced, servo_map(head), slow_down=True)
         assert (walk.slowed, walk.slow_enough, walk.too_slow) == (1, 1, [])
-    assert {one.usable_deg_s for one in walk.speeds} == {None}, "it is not known"
+    assert {speed.usable_deg_s for speed in walk.speeds} == {None}, "it is not known"
 
 
 def test_a_pulse_outside_of_its_limits_is_refused_with_its_servo(raced: RecordedWalks) -> None:

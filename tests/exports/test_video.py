@@ -33,7 +33,7 @@ def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
     assert (stream.codec_context.name, stream.width, stream.height) == ("h264", 160, 120)
     assert stream.average_rate == 5
     assert len(pictures) == PICTURES
-    blue = [(one[..., 2] - one[..., 0] > 60).sum() for one in pictures]
+    blue = [(picture[..., 2] - picture[..., 0] > 60).sum() for picture in pictures]
     assert min(blue) > 40, "greedy's robot is blue"
     assert np.abs(pictures[0] - pictures[-1]).max() > 60
 

@@ -25,7 +25,7 @@ def children() -> list[psutil.Process]:
 
 
 def _descendants() -> set[int]:
-    return {one.pid for one in psutil.Process().children(recursive=True)}
+    return {child.pid for child in psutil.Process().children(recursive=True)}
 
 
 @pytest.fixture

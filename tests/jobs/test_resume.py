@@ -133,8 +133,10 @@ def test_race_that_was_stopped_is_repeated_to_its_end(
     ended = wait_until_ended(store, race)
     assert ended.state == "finished"
     results = [one.result for one in (ended, unbroken)]
-    assert all(isinstance(one, RaceResult) for one in results)
-    first, second = (one.recording_sha256 for one in results if isinstance(one, RaceResult))
+    assert all(isinstance(result, RaceResult) for result in results)
+    first, second = (
+        result.recording_sha256 for result in results if isinstance(result, RaceResult)
+    )
     assert first == second
 
 

@@ -94,8 +94,12 @@ class Races:
         assert recording is not None
         parts.recordings.finish(run.id)
         tests = [
-            {"step": one.step, "distance_m": one.distance_m, "epsilon": one.epsilon}
-            for one in recording.evaluations
+            {
+                "step": evaluation.step,
+                "distance_m": evaluation.distance_m,
+                "epsilon": evaluation.epsilon,
+            }
+            for evaluation in recording.evaluations
         ]
         at_end = TrainingResult(distance_m=0.123, greedy_distance_m=0.4)
         result = at_end if state in ("finished", "stopped") else None

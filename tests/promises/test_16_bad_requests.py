@@ -103,7 +103,9 @@ def test_generated_requests_give_no_5xx(unlimited_api: Api) -> None:
 
 def modes_of(operation: Any) -> list[GenerationMode]:
     """Return the modes that have cases: of a path alone, no value is invalid."""
-    others = [one for one in operation.iter_parameters() if one.location != "path"]
+    others = [
+        parameter for parameter in operation.iter_parameters() if parameter.location != "path"
+    ]
     may_be_invalid = bool(others or operation.body)
     return [GenerationMode.POSITIVE, *[GenerationMode.NEGATIVE] * may_be_invalid]
 

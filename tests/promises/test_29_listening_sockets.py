@@ -61,8 +61,8 @@ class Sockets:
         for process in [self._server, *self._server.children(recursive=True)]:
             with suppress(psutil.Error):
                 self.names.add(process.name())
-                for one in process.net_connections(kind="all"):
-                    self._record(one)
+                for connection in process.net_connections(kind="all"):
+                    self._record(connection)
 
     def _record(self, one: Any) -> None:
         if one.family not in _INET:

@@ -140,14 +140,14 @@ def test_a_server_that_is_killed_leaves_no_half_run(
             )
             for path, data in files.items()
         ]
-        for one in importers:
-            one.start()
+        for importer in importers:
+            importer.start()
         time.sleep(chance.uniform(0.3, at_length(0.8, 2)))
         while kill == KILLS - 1 and not acknowledged:
             time.sleep(0.05)  # on a busy machine none may have been in all rounds
         server.process.send_signal(signal.SIGKILL)
-        for one in importers:
-            one.join()
+        for importer in importers:
+            importer.join()
         server.end(signal.SIGKILL)
         server = launch(**unlimited)
         ids = all_ids(server)

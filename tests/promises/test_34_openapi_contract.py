@@ -94,7 +94,7 @@ def without_tuples(part: Any) -> Any:
     other = {name: without_tuples(one) for name, one in part.items()}
     if isinstance(items := other.pop("prefixItems", None), list):
         first = items[0]
-        other["items"] = first if all(one == first for one in items) else {"anyOf": items}
+        other["items"] = first if all(item == first for item in items) else {"anyOf": items}
     return other
 
 

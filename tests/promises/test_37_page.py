@@ -219,7 +219,7 @@ class Words:
         figures = [
             lane["clocks"][stage["clock"]] for lane in (race["result"] or {}).get("lanes", [])
         ]
-        is_ranked = bool(figures) and all(one["rank"] for one in figures)
+        is_ranked = bool(figures) and all(figure["rank"] for figure in figures)
         if stage["ended"] and end and not is_ranked:
             if not self._headline.startswith(f"{end} at step"):
                 wrong.append(f"headline of a race that is {race['state']}: {self._headline}")
@@ -228,7 +228,7 @@ class Words:
             if not re.search(r" wins | tie$", self._headline):
                 wrong.append(f"headline of a finished race: {self._headline}")
             ranks = sorted(int(row.split()[0]) for row in self._rows)
-            if ranks != sorted(one["rank"] for one in figures):
+            if ranks != sorted(figure["rank"] for figure in figures):
                 wrong.append(f"ranks {ranks} for {figures}")
         elif not stage["ended"] and re.search("Stopped|Interrupted|Failed", self._headline):
             wrong.append(f"an end before the end: {self._headline}")

@@ -160,7 +160,7 @@ class Class:
             assert own["role"] == "participant"
             assert (own["me"]["name"], own["me"]["seed"]) == (who["name"], who["seed"])
             if number in self.runs:
-                assert [one["run_id"] for one in own["me"]["runs"]] == [self.runs[number]]
+                assert [run["run_id"] for run in own["me"]["runs"]] == [self.runs[number]]
                 assert own["me"]["predictions"] == [{"card": 1, "value": number / 10}]
 
     def deeds(self) -> list[Callable[[], None]]:

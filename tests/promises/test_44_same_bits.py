@@ -72,7 +72,7 @@ def test_what_was_changed_is_told_with_other_instructions_too(folder: Path) -> N
     assert done.returncode == 1
     shown = json.loads(done.stdout)
     assert (shown["repeats"], shown["rounding"]) == (False, None)
-    assert any("9.0 m in the file" in one for one in shown["differences"])
+    assert any("9.0 m in the file" in difference for difference in shown["differences"])
 
 
 def _add_tools(folder: Path) -> None:

@@ -33,9 +33,11 @@ def test_failed_trials_are_told_where_the_result_is_returned_and_printed() -> No
     assert len(done.failed) == 2
     assert all(TRIPPED in reason for reason in done.failed.values())
     assert all("Clumsy" in name for name in done.failed)
-    by_agent = {one.name.partition(",")[0]: (one.seeds, one.failed) for one in done.settings}
+    by_agent = {
+        setting.name.partition(",")[0]: (setting.seeds, setting.failed) for setting in done.settings
+    }
     assert by_agent == {"Greedy": (1, 0), "Sarsa": (2, 0), "Clumsy": (0, 2)}
-    assert [one["failed"] for one in done.summary["settings"]] == [0, 0, 2]
+    assert [setting["failed"] for setting in done.summary["settings"]] == [0, 0, 2]
     for shown in (repr(done), done._repr_html_(), page(done.summary)):
         assert "2 of 5 trials failed" in shown.replace("&nbsp;", " ")
         assert TRIPPED in shown

@@ -179,7 +179,9 @@ def test_the_limit_of_torque_is_that_of_the_servo_with_the_largest(
     with_physics: RecordedWalk,
 ) -> None:
     torques = [with_physics.motion(index).torque_nm for index in range(15)]
-    largest = np.max([np.abs(one).max(axis=0) for one in torques if one is not None], axis=0)
+    largest = np.max(
+        [np.abs(torque).max(axis=0) for torque in torques if torque is not None], axis=0
+    )
     leg = 1 + int(largest.argmax()) // 3
     robot = with_physics.problem.robot
     legs = list(robot.legs)

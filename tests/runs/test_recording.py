@@ -59,10 +59,10 @@ def test_what_a_search_found_is_recorded(race: list[LaneRecording]) -> None:
     learner, greedy, two_step = race
     assert not any(taken.futures for taken in learner.steps)
     for taken in (*greedy.steps, *two_step.steps):
-        assert taken.action in [one.action for one in taken.futures]
+        assert taken.action in [future.action for future in taken.futures]
         assert len(taken.futures) == 12
     for taken in greedy.steps:
-        assert max(one.reward_m for one in taken.futures) == taken.reward_m
+        assert max(future.reward_m for future in taken.futures) == taken.reward_m
 
 
 def as_file(lanes: list[LaneRecording]) -> bytes:

@@ -383,5 +383,7 @@ def test_moment_that_pages_know_by_milliseconds_is_that_of_a_step(
     parts.stage.set(time_s=round(time_out_s, 3))
     frame = parts.next_frame()
     assert frame.phase == "photo-finish"
-    assert [lane.rank for lane in frame.lanes] == [one.rank for one in figures]
-    assert [lane.distance_m for lane in frame.lanes] == [one.finished_distance_m for one in figures]
+    assert [lane.rank for lane in frame.lanes] == [figure.rank for figure in figures]
+    assert [lane.distance_m for lane in frame.lanes] == [
+        figure.finished_distance_m for figure in figures
+    ]

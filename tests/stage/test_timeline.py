@@ -30,7 +30,7 @@ def test_each_step_is_told_with_its_thinking() -> None:
     thinking = [(0, 0.1), (1.1, 1.2), (2.2, 2.3)]
     assert shown["thinking"] == [pytest.approx(one) for one in thinking]
     points = [(0, 0), (0.1, 0), (1.1, 0.01), (1.2, 0.01), (2.2, 0.02), (2.3, 0.02), (3.3, 0.03)]
-    assert shown["points"] == [pytest.approx(one) for one in points]
+    assert shown["points"] == [pytest.approx(point) for point in points]
 
 
 @pytest.mark.parametrize(

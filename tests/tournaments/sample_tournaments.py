@@ -46,7 +46,7 @@ def judged(
     rules: TournamentRules, entries: Sequence[EntryConfig], tables: Sequence[bytes] = ()
 ) -> TournamentFile:
     """Judge the references and some entries, and end the tournament."""
-    by_digest = {sha256_of(one): from_bytes(one, "q.npz") for one in tables}
+    by_digest = {sha256_of(table): from_bytes(table, "q.npz") for table in tables}
     every = [*references(rules), *(completed(one, rules) for one in entries)]
     return tournament_file(
         "A tournament",

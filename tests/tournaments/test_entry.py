@@ -41,7 +41,7 @@ def test_a_creature_walks_in_its_gait() -> None:
 
 
 def test_the_references_are_there() -> None:
-    agents = [one.agent for one in references(rules_of())]
+    agents = [reference.agent for reference in references(rules_of())]
     assert agents == ["greedy", "random-walk", "linear-model"]
 
 

@@ -52,13 +52,13 @@ def test_equal_results_are_not_told_apart() -> None:
     same = [0.1, 0.2, 0.3, 0.4, 0.5]
     rounded = [one + 1e-16 for one in same]
     standings = ranking({7: same, 2: same, 5: rounded}, {2: 3})
-    assert {one.number: one.not_separable for one in standings} == {
+    assert {standing.number: standing.not_separable for standing in standings} == {
         2: (5, 7),
         5: (2, 7),
         7: (2, 5),
     }
-    assert all((one.best_rank, one.worst_rank) == (1, 3) for one in standings)
-    assert [one.failures for one in standings if one.number == 2] == [3]
+    assert all((standing.best_rank, standing.worst_rank) == (1, 3) for standing in standings)
+    assert [standing.failures for standing in standings if standing.number == 2] == [3]
     assert [one.number for one in ranking({7: same, 2: same}, {})] == [2, 7]
 
 
@@ -93,9 +93,9 @@ def test_ranks_are_consistent_and_independent_of_the_order(
     shuffled = list(distances.items())
     order.shuffle(shuffled)
     assert ranking(dict(shuffled), {}) == standings
-    by_number = {one.number: one for one in standings}
+    by_number = {standing.number: standing for standing in standings}
     assert set(by_number) == set(distances)
-    iqms = [one.iqm_m for one in standings]
+    iqms = [standing.iqm_m for standing in standings]
     assert iqms == sorted(iqms, reverse=True)
     for place, one in enumerate(standings, start=1):
         assert 1 <= one.best_rank <= place <= one.worst_rank <= len(standings)

@@ -35,9 +35,9 @@ def test_the_draws_follow_from_the_secret() -> None:
     rules = rules_of(simulator="mujoco", draws=8, worlds=("flat", "ice", "limp:legs=1,4"))
     draws = draws_of(rules, SECRET)
     assert draws == draws_of(rules, SECRET)
-    assert len({one.seed for one in draws}) == 8
-    assert all(0 <= one.seed < 2**53 for one in draws)
-    assert sorted(Counter(one.world for one in draws).values()) == [2, 3, 3]
+    assert len({draw.seed for draw in draws}) == 8
+    assert all(0 <= draw.seed < 2**53 for draw in draws)
+    assert sorted(Counter(draw.world for draw in draws).values()) == [2, 3, 3]
     assert draws != draws_of(rules, SECRET[::-1])
 
 

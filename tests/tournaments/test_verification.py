@@ -40,8 +40,8 @@ def kinematic() -> TournamentFile:
 
 def edited(tournament: TournamentFile, number: int, **changes: object) -> TournamentFile:
     entries = [
-        replace(one, **changes) if one.number == number else one  # type: ignore[arg-type]
-        for one in tournament.entries
+        replace(entry, **changes) if entry.number == number else entry  # type: ignore[arg-type]
+        for entry in tournament.entries
     ]
     return replace(tournament, entries=tuple(entries))
 

@@ -120,7 +120,7 @@ def test_the_odd_gait_is_not_judged_without_all_four_gaits() -> None:
 def test_with_too_few_seeds_no_claim_about_a_learner_is_established(seeds: int) -> None:
     summary = summary_of("table1", everywhere(0.4), seeds=seeds)
     learners = [one for one in summary["claims"] if one["id"] != "two-step-slow"]
-    assert {one["verdict"] for one in learners} == {"not established"}
+    assert {learner["verdict"] for learner in learners} == {"not established"}
 
 
 def test_where_the_cases_disagree_the_verdict_depends_and_the_evidence_lists_them() -> None:

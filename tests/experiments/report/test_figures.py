@@ -34,7 +34,9 @@ def small(experiment: str, seeds: int = 3, **given: Any) -> dict[str, Any]:
 def test_a_figure_renders_to_the_same_bytes_each_time_without_a_date(experiment: str) -> None:
     summary = small(experiment)
     for kind in FORMATS:
-        first, second = ([render(one.figure, kind) for one in sheets(summary)] for _ in range(2))
+        first, second = (
+            [render(sheet.figure, kind) for sheet in sheets(summary)] for _ in range(2)
+        )
         assert first == second
         assert all(one.startswith(_BEGINS[kind]) for one in first)
         assert not any(re.search(rb"CreationDate|dc:date|Creation Time", one) for one in first)
@@ -48,12 +50,12 @@ def test_figures_of_an_incomplete_experiment_can_be_drawn(experiment: str, done:
     results = sample_results(tried, lambda _: around(0.3))
     summary = summarise(tried, dict(list(results.items())[:done]))
     for _, group in panels(summary):
-        for one in group:
-            ElementTree.fromstring(inline_svg(one.figure, one.name))
-            assert done or "No trials yet" in one.alt
-            assert "1 seeds" not in one.alt
-    for one in sheets(summary):
-        assert render(one.figure, "png")
+        for sheet in group:
+            ElementTree.fromstring(inline_svg(sheet.figure, sheet.name))
+            assert done or "No trials yet" in sheet.alt
+            assert "1 seeds" not in sheet.alt
+    for sheet in sheets(summary):
+        assert render(sheet.figure, "png")
 
 
 @pytest.mark.test

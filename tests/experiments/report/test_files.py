@@ -150,10 +150,10 @@ def test_a_claim_has_its_verdict_in_every_case_and_its_numbers() -> None:
     summary = summary_of("table1", lambda _: around(0.3), seeds=6)
     text = page(summary)
     assert text.count('class="claims"') == 1
-    for one in summary["claims"]:
-        assert f'id="claim-{one["id"]}"' in text
+    for claim in summary["claims"]:
+        assert f'id="claim-{claim["id"]}"' in text
     assert text.count('<span class="verdict ') == 2 * sum(
-        len(one["where"]) for one in summary["claims"]
+        len(claim["where"]) for claim in summary["claims"]
     )
     for told in summary["story"]:
         assert f"<h3>{told['heading'].replace(chr(39), '&#39;')}</h3>" in text

@@ -62,8 +62,8 @@ def test_an_archive_brings_its_robot(exported: bytes) -> None:
         assert members(export_run(store, run.id))[MEMBER] == DOCUMENT
         imported(store, exported)
         assert len(store.robots.stored()) == 1
-        for one in store.list().items:
-            store.delete(one.id)
+        for item in store.list().items:
+            store.delete(item.id)
         store.robots.delete(ID)
 
 
@@ -71,9 +71,9 @@ def test_its_name_is_made_distinct(exported: bytes) -> None:
     with temporary_store() as store:
         other = stored(store, document_of(robot({"preset": "dog", "femur_m": 0.08})))
         imported(store, exported)
-        assert [one.name for one in store.robots.stored()] == ["Rex", "Rex 2"]
-        for one in store.list().items:
-            store.delete(one.id)
+        assert [item.name for item in store.robots.stored()] == ["Rex", "Rex 2"]
+        for item in store.list().items:
+            store.delete(item.id)
         store.robots.delete(ID)
         store.robots.delete(str(other.id))
 

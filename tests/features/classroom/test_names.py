@@ -22,7 +22,7 @@ def test_codes_have_no_letters_that_look_alike() -> None:
     for _ in range(500):
         codes.add(new_code(choose, codes))
     assert len(codes) == 500
-    assert all(len(one) == CODE_LENGTH and set(one) <= set(ALPHABET) for one in codes)
+    assert all(len(code) == CODE_LENGTH and set(code) <= set(ALPHABET) for code in codes)
     assert new_code(random.Random(7).choice, ()) == new_code(random.Random(7).choice, ())
 
 
@@ -37,7 +37,7 @@ def test_names_are_distinct() -> None:
     for _ in range(1000):
         names.add(new_name(choose, names))
     assert len(names) == 1000
-    assert all(one.replace(" ", "").isalpha() for one in names)
+    assert all(name.replace(" ", "").isalpha() for name in names)
 
 
 @pytest.mark.parametrize(

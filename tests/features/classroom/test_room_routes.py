@@ -155,7 +155,10 @@ def test_a_class_predicts_runs_and_sees_what_came_of_it(school: Class) -> None:
     assert len(distances) == 4
     assert after["interval"]["low_m"] <= after["interval"]["iqm_m"] <= after["interval"]["high_m"]
     score = after["entries"][3]["score"]
-    below = sum(one < 0.3 for one in distances) + sum(one == 0.3 for one in distances) / 2
+    below = (
+        sum(distance < 0.3 for distance in distances)
+        + sum(distance == 0.3 for distance in distances) / 2
+    )
     assert score["quantile"] == pytest.approx(below / 4)
     assert score["error"] == pytest.approx(abs(0.3 - after["interval"]["iqm_m"]))
     assert min(entry["run"]["rank"] for entry in after["entries"]) == 1
@@ -554,7 +557,7 @@ def test_a_teacher_removes_a_participant(school: Class) -> None:
     refused(school.teacher.call("DELETE", f"{path}/participants/7"), 404, "no participant")
     answer = school.teacher.call("DELETE", f"{path}/participants/0")
     assert answer.status_code == 200, answer.text
-    assert [one["seed"] for one in answer.json()["people"]] == [1]
+    assert [person["seed"] for person in answer.json()["people"]] == [1]
     assert school.teacher.get(f"/races/{waiting['id']}")["state"] in ("stopped", "finished")
     results = school.teacher.call("GET", f"{path}/results")
     assert name not in results.text

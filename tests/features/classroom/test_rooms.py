@@ -75,7 +75,7 @@ def test_nothing_is_left_of_a_deleted_room(store: RunStore) -> None:
         with pytest.raises(NotFound):
             one.get(code)
     assert RoomRows(store.database).predictions() == []
-    assert [one.room for one in RoomRows(store.database).participants()] == [other]
+    assert [participant.room for participant in RoomRows(store.database).participants()] == [other]
 
 
 def test_the_newest_of_many_what_ifs_is_the_same_after_a_restart(store: RunStore) -> None:

@@ -193,7 +193,7 @@ def test_league_compares_agents_in_worlds(tmp_path: Path) -> None:
     done = output(*league, "--steps", "30", "--world", "flat,noise", folder=tmp_path)
     # flat: greedy and informed once, noise: also the nominal greedy, of three seeds each
     assert done["trials"]["total"] == (2 + 3) + (3 * 3 + 3)
-    assert {one["world"] for one in done["worlds"]} == {"flat", "noise"}
+    assert {world["world"] for world in done["worlds"]} == {"flat", "noise"}
     folder = tmp_path / "league-results"
     assert len(kept(folder)) == done["trials"]["total"]
     assert (folder / "figures" / "league-2.svg").is_file()
@@ -205,7 +205,7 @@ def test_table_of_a_league_has_the_shares_of_greedy_and_of_the_best_known(tmp_pa
     done = in_process(*league, *size, folder=tmp_path, COLUMNS="120")
     assert (done.returncode, done.stderr) == (0, "")
     summary = json.loads((tmp_path / "league-results" / "summary.json").read_text("utf-8"))
-    (greedy,) = (one for one in summary["worlds"] if one["agent"] == "greedy")
+    (greedy,) = (world for world in summary["worlds"] if world["agent"] == "greedy")
     share = 100 * greedy["of_best_known"]["iqm"]
 
     lines = [re.split(" {2,}", line.strip()) for line in done.stdout.splitlines()]

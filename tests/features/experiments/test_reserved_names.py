@@ -35,6 +35,6 @@ def test_every_name_that_is_used_otherwise_is_reserved() -> None:
     for row in ROWS:
         used |= set(row.model_fields)
     # Settings are arguments beside the fields: `experiment_config(name, {"alpha": ...})`.
-    used |= {one.name for one in fields(ExperimentConfig)}
-    own = {one.name for one in fields(TrainingConfig)}
+    used |= {field.name for field in fields(ExperimentConfig)}
+    own = {field.name for field in fields(TrainingConfig)}
     assert {name for name in used - own if not name.startswith("_")} == RESERVED

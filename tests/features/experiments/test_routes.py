@@ -230,7 +230,7 @@ def test_experiments_with_curves_run_on_the_server(experiment: str, api: Api) ->
     assert run["progress"] == {"done": 12, "total": 12}
     assert (run["config"]["worlds"], run["config"]["tolerance"]) == (["noise"], 0.0)
     worlds = api.get(f"/experiments/{run['id']}/summary")["worlds"]
-    assert {one["agent"]: one["n"] for one in worlds} == {
+    assert {world["agent"]: world["n"] for world in worlds} == {
         "greedy": 3,
         "q-learning": 3,
         "linear-model": 3,

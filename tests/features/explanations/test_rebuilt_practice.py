@@ -109,7 +109,7 @@ def test_a_long_way_is_gone_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
     assert agent_state(learner.agent) == states_after("q-learning", 40)
     assert "ask again" in refusals[0]
-    assert any("of 40 steps are done" in one for one in refusals)
+    assert any("of 40 steps are done" in refusal for refusal in refusals)
 
 
 def test_a_practice_that_forgot_steps_or_changes_is_another() -> None:

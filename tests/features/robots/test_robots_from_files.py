@@ -115,8 +115,8 @@ def test_a_wrong_choice_changes_nothing(api: Api, spot: dict[str, Any]) -> None:
         {"servo_kp": -1},
         {"wings": 2},
     ]
-    for one in choices:
-        assert api.call("PATCH", path, json={"choices": one}).status_code == 422
+    for choice in choices:
+        assert api.call("PATCH", path, json={"choices": choice}).status_code == 422
     assert api.get("/robots")["items"] == [spot]
     body = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
     path = f"/robots/{body['id']}"

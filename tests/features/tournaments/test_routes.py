@@ -71,7 +71,7 @@ class Contest(Class):
     ) -> dict[str, Any]:
         stall_check = ProgressTimeout()
         while not is_so(view := self.look(tournament)):
-            stall_check.check([(one["state"], one["judged"]) for one in view["entries"]])
+            stall_check.check([(entry["state"], entry["judged"]) for entry in view["entries"]])
             time.sleep(0.03)
         return view
 
@@ -120,9 +120,15 @@ def test_a_class_enters_and_the_file_verifies(school: Contest) -> None:
     entered(pupils[1], tournament, agent="greedy")
     own = school.look(tournament, pupils[0])
     assert own["own"] == {"may_enter": True, "reason": None, "left": 5, "next_at": None}
-    assert [one["entry"] is not None for one in own["entries"]] == [True, True, True, True, False]
-    assert {one["judgements"] for one in own["entries"]} == {None} or not any(
-        one["judgements"] for one in own["entries"]
+    assert [entry["entry"] is not None for entry in own["entries"]] == [
+        True,
+        True,
+        True,
+        True,
+        False,
+    ]
+    assert {entry["judgements"] for entry in own["entries"]} == {None} or not any(
+        entry["judgements"] for entry in own["entries"]
     )
     (shown,) = pupils[0].get(f"/rooms/{code}")["tournaments"]
     assert shown == {"id": tournament["id"], "title": tournament["title"], "state": "open"}
@@ -130,9 +136,9 @@ def test_a_class_enters_and_the_file_verifies(school: Contest) -> None:
     ended = school.ended(tournament)
     assert commitment_of(ended["secret"]) == tournament["commitment"]
     assert len(ended["draws"]) == RULES["draws"]
-    assert [one["state"] for one in ended["entries"]] == ["judged"] * 5
-    assert {len(one["judgements"]) for one in ended["entries"]} == {RULES["draws"]}
-    assert sorted(one["number"] for one in ended["standings"]) == [0, 1, 2, 3, 4]
+    assert [entry["state"] for entry in ended["entries"]] == ["judged"] * 5
+    assert {len(entry["judgements"]) for entry in ended["entries"]} == {RULES["draws"]}
+    assert sorted(standing["number"] for standing in ended["standings"]) == [0, 1, 2, 3, 4]
     file = pupils[0].call("GET", f"/tournaments/{tournament['id']}/file")
     assert f"tournament-{tournament['id']}.json" in file.headers["content-disposition"]
     assert verify(read_file(file.content, "the file"), workers=1) == []
@@ -241,7 +247,7 @@ def test_how_much_a_search_may_simulate_is_a_rule(school: Contest) -> None:
     assert tournament["rules"]["transitions"] == 7_799
     entered(school.teacher, tournament, agent="look-ahead", settings={"depth": 2})
     ended = school.ended(tournament)
-    (failure,) = {one["failure"] for one in ended["entries"][3]["judgements"]}
+    (failure,) = {judgement["failure"] for judgement in ended["entries"][3]["judgements"]}
     assert "over 7,799 transitions" in failure
     file = school.teacher.call("GET", f"/tournaments/{tournament['id']}/file").content
     assert read_file(file, "file").rules.transitions == 7_799
@@ -274,7 +280,7 @@ def test_a_room_decides_who_may_know_and_enter(school: Contest) -> None:
     refused(enter(own, tournament, agent="beam"), 401)
     view = school.look(tournament, anyone)  # all may see what came of it
     assert not view["own"]["may_enter"]
-    assert [one["is_own"] for one in view["entries"]] == [False] * 4
+    assert [entry["is_own"] for entry in view["entries"]] == [False] * 4
     assert school.ended(tournament)["state"] == "ended"
     free = school.open()
     assert [one["id"] for one in anyone.get("/tournaments")["items"]] == [free["id"]]
@@ -318,8 +324,8 @@ def test_of_a_room_that_is_deleted_its_tournament_stays_without_names(school: Co
     school.teacher.call("DELETE", f"/trainings/{run['id']}")
     services.of(Rooms).forget(code)
     view = school.ended(tournament)
-    assert [one["name"] for one in view["entries"]][3] is None
-    assert [one["is_own"] for one in school.look(tournament, anyone)["entries"]] == [False] * 4
+    assert [entry["name"] for entry in view["entries"]][3] is None
+    assert [entry["is_own"] for entry in school.look(tournament, anyone)["entries"]] == [False] * 4
     file = anyone.call("GET", f"/tournaments/{tournament['id']}/file")
     assert name not in file.text
     assert read_file(file.content, "file").entries[3].name == "Entry 3"
@@ -355,7 +361,7 @@ def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     refused(enter(teacher, tournament, **body), 422, "was imported")
     teacher.call("DELETE", f"/trainings/{run['id']}")
     ended = school.ended(tournament)
-    tables = [one for one in ended["entries"] if one["training_id"] is not None]
+    tables = [entry for entry in ended["entries"] if entry["training_id"] is not None]
     assert [one["training_id"] for one in tables] == [run["id"]] * 2
     # The same table on the same draws.
     assert tables[0]["judgements"] == tables[1]["judgements"]
@@ -382,7 +388,7 @@ def test_robots_of_the_rules_are_in_the_file(school: Contest) -> None:
     assert view["entry"]["robot"]["id"] == rex
     entered(teacher, tournament, agent="greedy", robot="ant")
     ended = school.ended(tournament)
-    assert [len(one["judgements"]) for one in ended["entries"]] == [5] * 5
+    assert [len(entry["judgements"]) for entry in ended["entries"]] == [5] * 5
     refused(teacher.call("DELETE", f"/robots/{rex}"), 409, "A tournament uses Rex")
     data = teacher.call("GET", f"/tournaments/{tournament['id']}/file").content
     teacher.call("DELETE", f"/tournaments/{tournament['id']}")
@@ -400,7 +406,7 @@ def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
             school.teacher, tournament, agent="q-learning", settings={"alpha": number / 10 + 0.1}
         )
     ended = school.ended(tournament, withdraw_waiting=True)
-    states = [one["state"] for one in ended["entries"]]
+    states = [entry["state"] for entry in ended["entries"]]
     assert states[:3] == ["judged"] * 3
     assert "withdrawn" in states[3:]
     assert len(ended["standings"]) == states.count("judged")
@@ -420,20 +426,20 @@ def test_events_tell_of_it_on_the_common_stage_and_the_rooms(school: Contest) ->
     of_room = services.of(RoomStages).of(code)
     assert of_room is not None
     channels = (services.stages[0].channel, of_room.channel)
-    streams = [one.subscribe(names={"tournament"}) for one in channels]
+    streams = [stream.subscribe(names={"tournament"}) for stream in channels]
     tournament = school.open(code)
     entered(school.teacher, tournament, agent="greedy")
     school.ended(tournament)
-    for one in streams:
-        newest = one.drain()[-1]  # those before it were superseded
+    for stream in streams:
+        newest = stream.drain()[-1]  # those before it were superseded
         event = TypeAdapter(TournamentEvent).validate_json(newest.data)
         assert (event.id, event.state) == (tournament["id"], "ended")
         assert (event.entries, event.judged, event.of) == (1, 20, 20)
     school.teacher.call("DELETE", f"/tournaments/{tournament['id']}")
-    for one in streams:
-        (deleted,) = one.drain()
+    for stream in streams:
+        (deleted,) = stream.drain()
         assert TypeAdapter(TournamentEvent).validate_json(deleted.data).state == "deleted"
-        one.close()
+        stream.close()
 
 
 def test_its_page_and_its_address(school: Contest) -> None:

@@ -19,7 +19,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tournament = judged(rules_of(), [EntryConfig(agent="q-learning")])
     (place / "t.json").write_bytes(write_file(tournament))
     own = tournament.entries[3]
-    better = tuple(replace(one, distance_m=0.9) for one in own.judgements[:1]) + own.judgements[1:]
+    better = (
+        tuple(replace(judgement, distance_m=0.9) for judgement in own.judgements[:1])
+        + own.judgements[1:]
+    )
     entries = (*tournament.entries[:3], replace(own, judgements=better))
     (place / "changed.json").write_bytes(write_file(replace(tournament, entries=entries)))
     return place
@@ -49,7 +52,7 @@ def test_it_prints_json(folder: Path) -> None:
     assert shown["repeats"] is True
     assert shown["differences"] == []
     assert shown["version_note"] is None
-    assert [one["best_rank"] for one in shown["standings"]] == [1, 1, 3, 4]
+    assert [standing["best_rank"] for standing in shown["standings"]] == [1, 1, 3, 4]
     done = in_process("verify", "changed.json", "--json", folder=folder)
     assert done.returncode == 1
     assert len(json.loads(done.stdout)["differences"]) == 1

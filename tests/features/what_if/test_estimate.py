@@ -49,8 +49,8 @@ class TimedPool(ProcessPool):
             return self._times_of(kinds)
 
     def _times_of(self, kinds: Sequence[TimedSteps]) -> list[Any]:
-        self.timed += [one.training.agent for one in kinds]
-        return [0.1 if one.practises else 1.0 for one in kinds]
+        self.timed += [kind.training.agent for kind in kinds]
+        return [0.1 if kind.practises else 1.0 for kind in kinds]
 
 
 def training(**fields: Any) -> TrainingStart:

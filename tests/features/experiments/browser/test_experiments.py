@@ -337,7 +337,7 @@ def tells_of_its_sweep(dashboard: Dashboard) -> None:
         page.set_viewport_size({"width": width, "height": 844})
         expect(table.get_by_role("rowheader")).to_have_text(["α\u00a00.1", "α\u00a00.3"])
         numbers = table.locator("tbody tr").first.locator(".axis-number")
-        assert [one.strip() for one in numbers.all_text_contents()][:2] == [
+        assert [text_.strip() for text_ in numbers.all_text_contents()][:2] == [
             "0.00\u00a0m",
             "0.20\u00a0m",
         ]

@@ -79,7 +79,7 @@ def test_a_body_is_saved_raced_renamed_hidden_and_kept_while_runs_use_it(
     robots.get_by_role("button", name="Delete Max").click()
     expect(robots.get_by_role("alert")).to_contain_text("2 runs use Max")
     expect(robots.get_by_role("alert")).to_contain_text("hide it instead")
-    assert [one.split()[0] for one in dashboard.complaints] == ["409"]
+    assert [complaint.split()[0] for complaint in dashboard.complaints] == ["409"]
     dashboard.complaints.clear()
     robots.get_by_role("button", name="Hide Max").click()
     expect(robots.get_by_role("button", name="Show Max")).to_be_visible()
@@ -128,7 +128,7 @@ def test_a_file_is_dropped_corrected_and_trained(
     chooser = robots.get_by_label("Robot from a file…")
     chooser.set_input_files(tmp_path / "bad.xml")
     expect(robots.get_by_role("alert")).to_contain_text("bad.xml")
-    assert [one.split()[0] for one in dashboard.complaints] == ["422"]
+    assert [complaint.split()[0] for complaint in dashboard.complaints] == ["422"]
     dashboard.complaints.clear()
     robots.get_by_role("button", name="Dismiss bad.xml").click()
     drop(dashboard, robots, "spot.xml", files["spot.xml"])
