@@ -33,10 +33,7 @@ export function install(all) {
   for (const { fields = {}, tabs = {}, views = {}, hideable = [], events = {} } of all) {
     declareFields(fields);
     addHandlers(events);
-    const panels = Object.entries(tabs).flatMap(([tab, { wasPanel }]) => (wasPanel ? [[wasPanel, tab]] : []));
-    declareWords({
-      tabs: Object.keys(tabs), views: Object.keys(views), hideable, panels: Object.fromEntries(panels),
-    });
+    declareWords({ tabs: Object.keys(tabs), views: Object.keys(views), hideable });
   }
 }
 

@@ -94,8 +94,6 @@ const TABS = ["board", "train", "world"];
 const VIEWS = ["race", "runs", "compare"];
 /** The ways to group the list of runs. */
 export const GROUPINGS = ["sweep", "race", "day", "none"];
-/** @type {Record<string, string>} */
-const earlierPanels = {};
 /** Parts of the page that can be hidden; features add theirs. */
 const HIDEABLE = ["panel"];
 
@@ -173,14 +171,9 @@ export function declareFields(fields) {
   }
 }
 
-/**
- * Add words that fields can have.
- * @param {{ tabs: string[], views: string[], hideable: string[], panels: Record<string, string> }} words `panels`: what
- *   a link of version 0.1 said of a panel → the tab that it is now
- */
-export function declareWords({ tabs, views, hideable, panels }) {
+/** Add words that fields can have. @param {{ tabs: string[], views: string[], hideable: string[] }} words */
+export function declareWords({ tabs, views, hideable }) {
   TABS.push(...tabs);
-  Object.assign(earlierPanels, panels);
   VIEWS.push(...views);
   HIDEABLE.push(...hideable);
 }
@@ -237,23 +230,12 @@ export const addressOf = (values) => written({ ...INITIAL, ...values });
 export const entry = () => queryOf(ENTRIES.flatMap(([name, field]) =>
   (field.isEntry ? pairsOf(field, page[name].value) : [])));
 
-/** A query as this version writes it. @param {string} search */
-function currentQuery(search) {
-  const query = new URLSearchParams(search);
-  for (const [panel, tab] of Object.entries(earlierPanels)) {
-    if (!query.has(panel)) continue;
-    if (query.get(panel) !== "closed" && !query.has("tab")) query.set("tab", tab);
-    query.delete(panel);
-  }
-  return query;
-}
-
 /** @type {(address: { search: string, hash: string }) => Record<string, URLSearchParams | undefined>} */
 function partsOf({ search, hash }) {
   const [view, query] = hash.slice(1).split("?");
   const hashPart = new URLSearchParams(view ? { view } : {});
   const ofView = query ? { [view]: new URLSearchParams(query) } : {};
-  return { ...ofView, query: currentQuery(search), hash: hashPart };
+  return { ...ofView, query: new URLSearchParams(search), hash: hashPart };
 }
 
 /** @type {(field: Field<any>, query: URLSearchParams) => any} */

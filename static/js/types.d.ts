@@ -259,8 +259,6 @@ export interface TabKind {
   about: string;
   /** Whether Watch shows it too, with a way back, though it lists no tabs. */
   isInWatch?: boolean;
-  /** What links of version 0.1 called it. */
-  wasPanel?: string;
 }
 export interface ViewPart extends LoadedPart {
   title: string;

@@ -44,10 +44,6 @@ def test_a_link_opens_what_was_set_and_what_was_shown(
     expect(dashboard.primary).to_have_text(re.compile("^Train 750 steps"))
     expect(page.get_by_role("tab", name="Gait", selected=True)).to_be_visible()
     assert page.url == link
-    # Links of version 0.1 named panels, which are tabs now, in the depth that has them.
-    for query, tab in (("explain", "Why"), ("what-if=open", "What if")):
-        dashboard.open(f"{server.address}?{query}")
-        expect(page.get_by_role("tab", name=tab, selected=True)).to_be_visible()
 
 
 def test_back_restores_the_view_its_filters_and_the_form(

@@ -37,10 +37,10 @@ export const EXAMPLE = {
   },
   hideable: ["card"],
   tabs: {
-    "why": { ...tabOf("Why", "try", 40), isInWatch: true, wasPanel: "explain" },
+    "why": { ...tabOf("Why", "try", 40), isInWatch: true },
     "gait": tabOf("Gait", "study", 50),
     "table": tabOf("Table", "study", 60),
-    "what-if": { ...tabOf("What if", "study", 70), wasPanel: "what-if" },
+    "what-if": { ...tabOf("What if", "study", 70) },
   },
   views: {
     experiments: { title: "Experiments", isInHeader: true, show: "none.js#None", loading: "experiments" },

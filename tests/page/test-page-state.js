@@ -69,19 +69,7 @@ test("a link is read as the state that wrote it, each field of it", () => {
   }
 });
 
-test("a panel that a link of version 0.1 opened is a tab now, unless it was closed", () => {
-  const tabOf = (/** @type {string} */ link) => {
-    open(link);
-    return [page.tab.value, write()];
-  };
-  assert.deepEqual(tabOf("/?steps=750&explain"), ["why", "?steps=750&tab=why"]);
-  assert.deepEqual(tabOf("/?what-if=open"), ["what-if", "?tab=what-if"]);
-  assert.deepEqual(tabOf("/?what-if=closed"), [null, ""]);
-  assert.deepEqual(tabOf("/?explain&tab=gait"), ["gait", "?tab=gait"]);
-  assert.deepEqual(ignored.query.value, []);
-});
-
-test("links of earlier versions open", () => {
+test("a link that people have typed opens", () => {
   open("/?gait=wave&alpha=0.3&run=a&ghost=b&t=2.50&lit#experiments?experiment=sweep&alpha=0.1,0.3&run=c");
   const { form, experiment, view, run, ghost, moment, is_lit, report } = document();
   assert.deepEqual([view, run, ghost, moment, is_lit, report], ["experiments", "a", "b", 2.5, true, "c"]);

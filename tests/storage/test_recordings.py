@@ -169,7 +169,7 @@ def test_log_survives_restarts_and_is_cut_where_the_training_resumes(
 
 
 def test_training_without_a_whole_log_has_none(store: RunStore) -> None:
-    """As one that an earlier version began."""
+    """As one that began in the middle."""
     store.create(training("a"))
     recordings = Recordings(store)
     recordings.begin_training("a", practise(1).rest_qpos, after_step=10)

@@ -252,8 +252,8 @@ class Explanations:
         log = self._recordings.transitions(run.id)
         if log is None or not len(log):
             raise Conflict(
-                f"training {run.id} has no log of its steps: it has not begun, or was recorded by "
-                "an earlier version or elsewhere; train it again to explain it",
+                f"training {run.id} has no log of its steps: it has not begun, or was "
+                "imported without one; train it again to explain it",
                 run.state,
             )
         return log

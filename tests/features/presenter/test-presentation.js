@@ -46,7 +46,7 @@ beforeEach(() => {
   told = [];
 });
 
-test("links of earlier versions present the page, or make it the remote", () => {
+test("links present the page, or make it the remote", () => {
   read({ search: "?run=a&present", hash: "" });
   assert.deepEqual([page.isPresenting.value, page.isRemote.value], [true, false]);
   read({ search: "?present=&remote", hash: "" });
