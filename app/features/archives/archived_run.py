@@ -72,9 +72,9 @@ class _EndedRun(UntrustedInput, frozen=True):
     created_at: Moment
     started_at: Moment | None
     ended_at: Moment | None
-    workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None = None
-    tags: tuple[Annotated[str, Meta(max_length=MAX_TAG)], ...] = ()
-    notes: Annotated[str, Meta(max_length=MAX_NOTES)] = ""
+    workers: Annotated[int, Meta(ge=1, le=MAX_WORKERS)] | None
+    tags: tuple[Annotated[str, Meta(max_length=MAX_TAG)], ...]
+    notes: Annotated[str, Meta(max_length=MAX_NOTES)]
 
 
 class _File(UntrustedInput, frozen=True):
@@ -104,9 +104,6 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
     run_fields = {name: getattr(run, name) for name in _EndedRun.__struct_fields__}
     run_fields["config"] = to_json(run.config)
     run_fields["result"] = None if run.result is None else to_json(run.result)
-    for name in ("tags", "notes"):
-        if not run_fields[name]:
-            del run_fields[name]
     document = {"format": FORMAT, "version": __version__, "run": run_fields, "curve": list(curve)}
     data = msgspec.json.format(msgspec.json.encode(document), indent=1)
     if len(data) > MAX_JSON_BYTES:
