@@ -26,7 +26,7 @@ from hexapods.imports.drawing import find_meshes
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
-from hexapods.imports.posed import PosedRobot, resting_pose
+from hexapods.imports.posed_robot import PosedRobot, resting_pose
 from hexapods.imports.servos import (
     FoundServo,
     angle_limits,
@@ -132,9 +132,9 @@ class _Builder:
 
     def build(self) -> ImportedRobot:
         self._check_size()
-        legged = self._legged()
-        home = find_stance(legged, self._choices, self._notes)
-        reaches = reaches_grid(legged, home)
+        robot = self._robot_with_legs()
+        home = find_stance(robot, self._choices, self._notes)
+        reaches = reaches_grid(robot, home)
         self._tell_of_reach(reaches)
         links: dict[int | None, str] = {None: self._name_of_torso()}
         links |= {joint: self._name_of_link(joint) for joint in self._joints}
@@ -142,7 +142,7 @@ class _Builder:
         mass_kg = ordered_sum(mass.kg for mass in masses.values())
         if not 0.001 <= mass_kg <= 10_000:
             raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
-        guess_nm = guessed_torque(mass_kg, legged.length_m, len(self._chains))
+        guess_nm = guessed_torque(mass_kg, robot.length_m, len(self._chains))
         servos = find_servos(self._compiled, self._joints, guess_nm, self._choices, self._notes)
         origins: dict[int | None, FloatArray] = {None: np.zeros(3)}
         origins |= {joint: self._posed.anchor(joint) for joint in self._joints}
@@ -198,7 +198,7 @@ class _Builder:
         span: FloatArray = np.maximum(half, thick)
         return span
 
-    def _legged(self) -> RobotWithLegs:
+    def _robot_with_legs(self) -> RobotWithLegs:
         model = self._compiled.model
 
         def angles(qpos: FloatArray) -> Angles:

@@ -11,7 +11,7 @@ from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
 from hexapods.imports.decimation import cluster
 from hexapods.imports.notes import Notes
-from hexapods.imports.posed import PosedRobot
+from hexapods.imports.posed_robot import PosedRobot
 from hexapods.imports.surfaces import Triangles
 
 _AIM = 0.7

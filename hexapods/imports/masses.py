@@ -10,7 +10,7 @@ from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.imports.compiling import LEAST_KG
 from hexapods.imports.notes import Notes, listed
-from hexapods.imports.posed import PosedRobot
+from hexapods.imports.posed_robot import PosedRobot
 
 _DENSITY = 500.0
 """Density of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""

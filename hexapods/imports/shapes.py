@@ -9,7 +9,7 @@ import numpy as np
 from hexapods.domain.robot_model import GeomKind, ModelGeom
 from hexapods.domain.types import FloatArray
 from hexapods.imports.notes import Notes
-from hexapods.imports.posed import PosedRobot
+from hexapods.imports.posed_robot import PosedRobot
 
 _MOST_OF_TORSO, _MOST_OF_LINK = 8, 6
 _LEAST_M = 0.001

@@ -74,49 +74,49 @@ class RobotWithLegs:
         return np.array(feet) - self.radii_m
 
 
-def find_stance(legged: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
+def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
     """Return the angles with which the robot stands, leg by leg.
 
     Raises:
         InvalidInput: if the chosen ones are not possible.
     """
-    angles = _level(legged, _found(legged, choices, notes), notes)
+    angles = _level(robot, _found(robot, choices, notes), notes)
     if choices.home_rad:
-        angles = _changed(legged, angles, choices.home_rad)
+        angles = _changed(robot, angles, choices.home_rad)
     return angles
 
 
-def reaches_grid(legged: RobotWithLegs, angles: Angles) -> bool:
+def reaches_grid(robot: RobotWithLegs, angles: Angles) -> bool:
     """Whether each foot reaches its box from a stance."""
-    return not any(_unreached(chain, leg_angles) for chain, leg_angles in _pairs(legged, angles))
+    return not any(_unreached(chain, leg_angles) for chain, leg_angles in _pairs(robot, angles))
 
 
-def _pairs(legged: RobotWithLegs, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
-    return list(zip(legged.chains, angles, strict=True))
+def _pairs(robot: RobotWithLegs, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
+    return list(zip(robot.chains, angles, strict=True))
 
 
-def _found(legged: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
+def _found(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
     if choices.keyframe is not None:
-        if choices.keyframe not in legged.keyframes:
-            valid = listed(legged.keyframes) or "none"
+        if choices.keyframe not in robot.keyframes:
+            valid = listed(robot.keyframes) or "none"
             raise InvalidInput(
                 f"the file has no keyframe {quoted(choices.keyframe)!r}; it has: {valid}"
             )
-        return _within(legged, legged.keyframes[choices.keyframe])
+        return _within(robot, robot.keyframes[choices.keyframe])
     tried: list[str] = []
-    for name in sorted(legged.keyframes, key=_suitability):
-        problem = _problem(legged, legged.keyframes[name])
+    for name in sorted(robot.keyframes, key=_suitability):
+        problem = _problem(robot, robot.keyframes[name])
         if problem is None:
             notes.guess(f"it stands as in keyframe {quoted(name)}")
-            return _within(legged, legged.keyframes[name])
+            return _within(robot, robot.keyframes[name])
         tried.append(f"in keyframe {quoted(name)} {problem}")
-    problem = _problem(legged, legged.at_rest)
+    problem = _problem(robot, robot.at_rest)
     if problem is None:
         notes.guess("it stands as the file begins, all angles 0")
-        return _within(legged, legged.at_rest)
+        return _within(robot, robot.at_rest)
     tried.append(f"as the file begins {problem}")
     notes.guess(f"it stands with bent knees, as was searched: {'; '.join(tried[:3])}")
-    return search(legged)
+    return search(robot)
 
 
 def _suitability(name: str) -> int:
@@ -125,25 +125,25 @@ def _suitability(name: str) -> int:
     return min(ranks, default=len(_HOMES))
 
 
-def _within(legged: RobotWithLegs, angles: Angles) -> Angles:
-    return [np.clip(leg_angles, *chain.limits) for chain, leg_angles in _pairs(legged, angles)]
+def _within(robot: RobotWithLegs, angles: Angles) -> Angles:
+    return [np.clip(leg_angles, *chain.limits) for chain, leg_angles in _pairs(robot, angles)]
 
 
-def _problem(legged: RobotWithLegs, angles: Angles) -> str | None:
+def _problem(robot: RobotWithLegs, angles: Angles) -> str | None:
     """Return why a stance is not good; None if it is."""
-    for (chain, leg_angles), names in zip(_pairs(legged, angles), legged.names, strict=True):
+    for (chain, leg_angles), names in zip(_pairs(robot, angles), robot.names, strict=True):
         low, high = chain.limits
         out = np.flatnonzero((leg_angles < low - 1e-3) | (leg_angles > high + 1e-3))
         if len(out):
             return f"joint {quoted(names[int(out[0])])} would be outside its limits"
-    bottoms = legged.bottoms_m(angles)
-    if np.ptp(bottoms) > _LEVEL_SHARE * legged.length_m:
+    bottoms = robot.bottoms_m(angles)
+    if np.ptp(bottoms) > _LEVEL_SHARE * robot.length_m:
         return "the feet would not be level"
-    if legged.torso_bottom_m - bottoms.max() < _CLEARANCE_SHARE * legged.length_m:
+    if robot.torso_bottom_m - bottoms.max() < _CLEARANCE_SHARE * robot.length_m:
         return "the torso would touch the ground"
-    for number, (chain, leg_angles) in enumerate(_pairs(legged, angles)):
+    for number, (chain, leg_angles) in enumerate(_pairs(robot, angles)):
         if _unreached(chain, leg_angles):
-            return f"the foot after {quoted(legged.names[number][-1])} could hardly move"
+            return f"the foot after {quoted(robot.names[number][-1])} could hardly move"
     return None
 
 
@@ -159,13 +159,13 @@ def _unreached(chain: LegChain, angles: FloatArray) -> bool:
     return bool((off > PRECISION * chain.length_m).any())
 
 
-def _level(legged: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
+def _level(robot: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
     """Move the feet up or down to one height, where they reach it."""
-    bottoms = legged.bottoms_m(angles)
+    bottoms = robot.bottoms_m(angles)
     if np.ptp(bottoms) < 1e-6:
         return angles
     moved, unreached = [], []
-    for number, (chain, leg_angles) in enumerate(_pairs(legged, angles)):
+    for number, (chain, leg_angles) in enumerate(_pairs(robot, angles)):
         target = chain.feet(leg_angles[None])[0] + [0, 0, float(bottoms.mean() - bottoms[number])]
         solution, off = chain.solve(target[None], leg_angles)
         moved.append(solution[0])
@@ -187,11 +187,11 @@ def _level(legged: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
     return moved
 
 
-def _changed(legged: RobotWithLegs, angles: Angles, chosen: Mapping[str, float]) -> Angles:
+def _changed(robot: RobotWithLegs, angles: Angles, chosen: Mapping[str, float]) -> Angles:
     """Return a stance with some angles as a person decided."""
     places = {
         name: (leg, joint)
-        for leg, names in enumerate(legged.names)
+        for leg, names in enumerate(robot.names)
         for joint, name in enumerate(names)
     }
     changed = [leg_angles.copy() for leg_angles in angles]
@@ -201,7 +201,7 @@ def _changed(legged: RobotWithLegs, angles: Angles, chosen: Mapping[str, float])
                 f"no leg has a joint {quoted(name)!r}; the legs' joints are: {listed(places)}"
             )
         leg, joint = places[name]
-        low, high = legged.chains[leg].limits[:, joint]
+        low, high = robot.chains[leg].limits[:, joint]
         if not low <= angle <= high:
             raise InvalidInput(
                 f"joint {quoted(name)} of leg {leg + 1} must be from {low:.3g} to {high:.3g} rad, "
@@ -211,15 +211,15 @@ def _changed(legged: RobotWithLegs, angles: Angles, chosen: Mapping[str, float])
     return changed
 
 
-def search(legged: RobotWithLegs) -> Angles:
+def search(robot: RobotWithLegs) -> Angles:
     """Return a stance with bent knees, in which legs that mirror each other do so.
 
     Of several postures the first from which all feet reach their boxes, or most.
     """
-    fewest, stance = len(legged.chains) + 1, list[FloatArray]()
+    fewest, stance = len(robot.chains) + 1, list[FloatArray]()
     for lower in range(_POSTURES):
-        angles = _posture(legged, lower)
-        pairs = _pairs(legged, angles)
+        angles = _posture(robot, lower)
+        pairs = _pairs(robot, angles)
         unreached = sum(_unreached(chain, one) for chain, one in pairs)  # whole numbers
         if unreached < fewest:
             fewest, stance = unreached, angles
@@ -228,13 +228,13 @@ def search(legged: RobotWithLegs) -> Angles:
     return stance
 
 
-def _posture(legged: RobotWithLegs, number: int) -> Angles:
+def _posture(robot: RobotWithLegs, number: int) -> Angles:
     rng = np.random.default_rng(0)
     first: FloatArray | None = None
     posture = []
-    for chain in legged.chains:
+    for chain in robot.chains:
         is_alike = first is not None and len(first) == len(chain.axes)
-        wanted = _wanted(chain, legged.torso_bottom_m, number)
+        wanted = _wanted(chain, robot.torso_bottom_m, number)
         best = _best(chain, wanted, first if is_alike else None, rng)
         first = best if first is None else first
         posture.append(best)

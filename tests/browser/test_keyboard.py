@@ -101,7 +101,7 @@ def test_depths_tabs_and_time(dashboard: Dashboard, shared_server: Serving) -> N
     goes_through_time(dashboard)
 
     page.keyboard.press("p")
-    expect(page.get_by_role("region", name="Presenter’s desk")).to_be_visible()
+    expect(page.get_by_role("region", name="Presenter’s panel")).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.get_by_role("banner")).to_be_visible()
 

@@ -17,10 +17,10 @@ def each_stance_is_searched_once() -> Iterator[None]:
     """
     search, kept = stance.search, dict[bytes, list[np.ndarray]]()
 
-    def kept_search(legged: stance.RobotWithLegs) -> stance.Angles:
-        key = pickle.dumps(legged)
+    def kept_search(robot: stance.RobotWithLegs) -> stance.Angles:
+        key = pickle.dumps(robot)
         if key not in kept:
-            kept[key] = search(legged)
+            kept[key] = search(robot)
         return [angles.copy() for angles in kept[key]]
 
     with pytest.MonkeyPatch.context() as patch:

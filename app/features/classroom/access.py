@@ -62,7 +62,7 @@ class ParticipantAccess(Access):
 
 @cache
 def participant(action: CardAction | Literal["leave"]) -> ParticipantAccess:
-    """Return the access of a action of participants in their room."""
+    """Return the access of an action of participants in their room."""
     return ParticipantAccess(name=f"participant: {action}", action=action)
 
 
@@ -117,7 +117,7 @@ class Participant:
         return None if why is None else problem(403, as_sentence(why))
 
     def _why_not(self, access: ParticipantAccess, room: Room) -> str | None:
-        """Return why the card that a room shows forbids a action; None if it allows it."""
+        """Return why the card that a room shows forbids an action; None if it allows it."""
         if access.action == "leave":
             return None
         self.asks_what_if = access.action == "run" and room.shown.go == "what-if"
@@ -130,8 +130,10 @@ class Participant:
             "predict": "an answer to the card",
             "run": "the run of the card",
         }
-        open_deeds = [words for action, words in actions.items() if room.refusal(action) is None]
-        allowed = " and ".join(open_deeds) or "nothing but to watch"
+        allowed_actions = [
+            words for action, words in actions.items() if room.refusal(action) is None
+        ]
+        allowed = " and ".join(allowed_actions) or "nothing but to watch"
         what = "This question" if access is QUESTION else "This"
         return (
             f"{what} is not open to participants of a room; the card that the room {code} shows "

@@ -113,7 +113,7 @@ class Room:
         )
 
     def refusal(self, action: CardAction) -> str | None:
-        """Return why the card that is shown forbids a action; None if it allows it."""
+        """Return why the card that is shown forbids an action; None if it allows it."""
         card = self.shown
         if action == "predict" and card.ask is None:
             return _ASKS_NOTHING.format(number=self.card)

@@ -1,4 +1,4 @@
-// The presenter's desk below the stage: the card, what comes next, and how others can watch.
+// The presenter's panel below the stage: the card, what comes next, and how others can watch.
 import { useEffect, useState } from "preact/hooks";
 import { call } from "../../js/api.js";
 import { canStart, primaryAction, runPrimaryAction } from "../../js/actions.js";
@@ -17,7 +17,7 @@ export function PresenterPanel() {
   const { code, is_blank } = presentation.value;
   const spectators = useSpectators();
   return html`
-    <section class=${`panel desk code-${code}`} aria-label="Presenter’s desk">
+    <section class=${`panel projection-controls code-${code}`} aria-label="Presenter’s panel">
       <h1 class="sr-only">Racing Hexapods</h1>
       <${Act} />
       <${Keys} />

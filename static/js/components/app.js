@@ -70,7 +70,7 @@ function Workspace({ isHidden }) {
     <div class=${`workspace ${isPanelHidden.value ? "alone" : ""}`} hidden=${isHidden}>
       <${Stage} />
       <${TimeBar} />
-      ${isProjected.value && html`<${Slot} name="desk" />`}
+      ${isProjected.value && html`<${Slot} name="controls while projected" />`}
       ${!isProjected.value && !replacement.value && html`<${Slot} name="card" />`}
       <${Panel} />
       ${isPhone.value && !replacement.value && html`<${ThumbTabs} />`}

@@ -55,9 +55,9 @@ const SILENT = {
   isEnd: false, isOfRun: false, isUnseen: false,
 };
 
-/** @type {<Told>(tell: (known: KnownPractice) => Told) => (facts: Facts) => Told} */
+/** @type {<Value>(tell: (known: KnownPractice) => Value) => (facts: Facts) => Value} */
 const ofPractice = (tell) => (facts) => tell(knownPractice(facts));
-/** Of a state in which there are rows. @type {<Told>(tell: (rows: Row[]) => Told) => (facts: Facts) => Told} */
+/** Of a state in which there are rows. @type {<Value>(tell: (rows: Row[]) => Value) => (facts: Facts) => Value} */
 const ofRows = (tell) => ({ rows }) => tell(/** @type {Row[]} */ (rows));
 /** @type {(tell: (known: KnownRace, rows: Row[]) => string) => (facts: Facts) => string} */
 const ofHalted = (tell) => (facts) => tell(facts, /** @type {Row[]} */ (facts.rows));

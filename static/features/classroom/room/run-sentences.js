@@ -13,10 +13,10 @@ import { isActive } from "../../../js/narrative/states.js";
 
 /**
  * What is said in a state. `share`: of the run that is computed.
- * @typedef {{ words: string, distance?: string, share?: number, isBusy?: boolean, isBad?: boolean }} Told
+ * @typedef {{ words: string, distance?: string, share?: number, isBusy?: boolean, isBad?: boolean }} RunSentence
  */
 
-/** @type {Record<string, (known: KnownOwn) => Told>} */
+/** @type {Record<string, (known: KnownOwn) => RunSentence>} */
 const TABLE = {
   "queued": ({ run, isAway }) => {
     const place = run.queue_position ? ` Place ${run.queue_position} in the queue.` : "";

@@ -38,7 +38,7 @@ export function WhyLost() {
 /** @param {{ asked: NonNullable<typeof lostLane.value> }} props */
 function Answer({ asked }) {
   const { answer, error, again } = loss.value;
-  if (answer && isAbout(answer, asked)) return html`<${Told} told=${answer} />`;
+  if (answer && isAbout(answer, asked)) return html`<${LossReasons} loss=${answer} />`;
   if (error && /** @type {RequestError} */ (error).status === NOT_AVAILABLE) {
     return html`<p class="dim">Not told here: ${messageOf(error)}</p>`;
   }
@@ -50,13 +50,13 @@ function Answer({ asked }) {
   `;
 }
 
-/** @param {{ told: Loss }} props */
-function Told({ told }) {
-  const ahead = standings.value?.find(({ lane }) => lane === told.ahead)?.title ?? `lane ${told.ahead + 1}`;
-  const when = told.is_ranked ? ` at time-out (${clockTitle(told.clock)})` : "";
+/** @param {{ loss: Loss }} props */
+function LossReasons({ loss: answer }) {
+  const ahead = standings.value?.find(({ lane }) => lane === answer.ahead)?.title ?? `lane ${answer.ahead + 1}`;
+  const when = answer.is_ranked ? ` at time-out (${clockTitle(answer.clock)})` : "";
   return html`
-    <p class="dim">${sentence(`${distanceApart(told.behind_m)} behind ${ahead}${when}`)}.</p>
-    ${told.sentences.map((text) => html`<p>${text}</p>`)}
+    <p class="dim">${sentence(`${distanceApart(answer.behind_m)} behind ${ahead}${when}`)}.</p>
+    ${answer.sentences.map((text) => html`<p>${text}</p>`)}
     <p class="dim fine">One step ahead only: the best next step is not always the best walk.</p>
   `;
 }

@@ -44,7 +44,7 @@ def test_a_window_is_presented_and_a_remote_turns_its_cards(
         hold(api, race, 2.5)
         # Whoever watches may show the page so, but not command what others see.
         dashboard.open(f"{address}?present")
-        expect(desk(dashboard)).to_contain_text("watching")
+        expect(presenter_panel(dashboard)).to_contain_text("watching")
         expect(dashboard.button("Next card")).to_have_count(0)
         shows_the_race_in_large_type(dashboard, address)
 
@@ -56,17 +56,19 @@ def test_a_window_is_presented_and_a_remote_turns_its_cards(
         assert remote.complaints == []
 
 
-def desk(dashboard: Dashboard) -> Locator:
+def presenter_panel(dashboard: Dashboard) -> Locator:
     """The card, what comes next, and how others can watch."""
-    return dashboard.page.get_by_role("region", name="Presenter’s desk")
+    return dashboard.page.get_by_role("region", name="Presenter’s panel")
 
 
 def shows_the_race_in_large_type(dashboard: Dashboard, address: str) -> None:
     """The picture takes most of the screen; the board, the rule and the address can be read."""
     page = dashboard.page
     expect(page.get_by_role("banner")).to_be_hidden()
-    expect(desk(dashboard).get_by_text(address[len("http://") : -1], exact=True)).to_be_visible()
-    code = desk(dashboard).get_by_role("img", name=f"QR code of {address}")
+    expect(
+        presenter_panel(dashboard).get_by_text(address[len("http://") : -1], exact=True)
+    ).to_be_visible()
+    code = presenter_panel(dashboard).get_by_role("img", name=f"QR code of {address}")
     assert code.evaluate("image => image.naturalWidth") > 20
     dashboard.eventually(lambda: dashboard.has_figures(lanes=2), "the scoreboard is there")
     expect(dashboard.headline).to_have_text(re.compile("leads|level"))
@@ -84,7 +86,7 @@ def shows_the_race_in_large_type(dashboard: Dashboard, address: str) -> None:
 
 def follows_its_remote(dashboard: Dashboard, remote: Dashboard) -> None:
     """Cards go forward and back; a step is explained; the page is blank; the code shrinks."""
-    card = desk(dashboard)
+    card = presenter_panel(dashboard)
     remote.page.get_by_role("button", name="Next: Moves").tap()
     expect(card).to_contain_text(re.compile(r"Card 1 of \d.*Moves"))
     remote.page.get_by_role("button", name=re.compile("^Next: Colours")).tap()
@@ -127,7 +129,7 @@ def follows_its_remote(dashboard: Dashboard, remote: Dashboard) -> None:
 
 def obeys_its_own_keys(dashboard: Dashboard) -> None:
     """As those of a remote control for slides; it fills the screen, until Escape or P."""
-    page, card = dashboard.page, desk(dashboard)
+    page, card = dashboard.page, presenter_panel(dashboard)
     page.keyboard.press("PageDown")
     expect(card).to_contain_text("Card 2 of")
     page.keyboard.press("ArrowRight")
