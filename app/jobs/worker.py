@@ -36,7 +36,7 @@ from hexapods.domain.disturbance_documents import as_mapping, disturbance_from
 from hexapods.domain.errors import HexapodError
 from hexapods.runs.baseline import BASELINES
 from hexapods.runs.racing import race
-from hexapods.runs.records import LaneStep, StepTaken
+from hexapods.runs.records import Evaluated, LaneStep, StepTaken
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, train
@@ -91,15 +91,20 @@ def _train(task: TrainingTask, control: JobControl) -> None:
     control.restore_changes(changes, task.changes, learner.step, walker.agent)
     control.send(Began((rest_qpos,), learner.step))
     control.checkpoint_regularly(lambda: Checkpointed(_saved(learner, task, control), learner.step))
-    result = None
+    result, evaluated, changes_before = None, None, 0
     with suppress(Stopped):
         for record in train(_interruptible(learner, control), config, record=True):
             control.report(record, learner.step)
-            is_step = isinstance(record, StepTaken)
-            if is_step and not control.wait_for_turn(learner.step, walker.agent):
-                raise Stopped
+            if isinstance(record, StepTaken):
+                if not control.wait_for_turn(learner.step, walker.agent):
+                    raise Stopped
+                evaluated, changes_before = None, len(control.changes)
+            elif isinstance(record, Evaluated):
+                evaluated = record
         control.flush()
-        result = training_result(learner, config)
+        # What was changed during an evaluation may lead to another one.
+        is_current = len(control.changes) == changes_before
+        result = training_result(learner, config, evaluated=evaluated if is_current else None)
     control.flush()
     if control.exiting and not control.stopped:
         control.checkpoint()

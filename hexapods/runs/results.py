@@ -24,6 +24,7 @@ from hexapods.runs.config import MAX_STEPS, TrainingConfig
 from hexapods.runs.lane import PlanningModel, plans_with
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.runs.recording import LaneRecording, recording_sha256
+from hexapods.runs.records import Evaluated
 from hexapods.runs.training import Learner, evaluate, measure_baseline
 
 Metres = Annotated[float, Ge(-1e6), Le(1e6)]
@@ -132,20 +133,28 @@ class RaceResult:
 
 
 def training_result(
-    learner: Learner, config: TrainingConfig, measure_reference: bool = True
+    learner: Learner,
+    config: TrainingConfig,
+    measure_reference: bool = True,
+    evaluated: Evaluated | None = None,
 ) -> TrainingResult:
     """Compute the result of a training: an evaluation, its references, the hash of the Q-table.
 
-    Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
+    Args:
+        learner: the training's state.
+        config: the training's config.
+        measure_reference: whether to measure the baseline; without it `greedy_distance_m` is None
+            unless it was measured before.
+        evaluated: the evaluation of the learner as it is, if there was one; it is not repeated.
     """
-    distance = evaluate(learner, config, learner.epsilon).distance_m
+    evaluated = evaluated or evaluate(learner, config, learner.epsilon)
     conditions = learner.conditions(config.steps)
     is_measured = learner.greedy_distance_m is not None and learner.measured_in == conditions
     if measure_reference and not is_measured:
         measure_baseline(learner, config, conditions)
     agent, is_known = learner.walker.agent, is_measured or measure_reference
     return TrainingResult(
-        distance_m=distance,
+        distance_m=evaluated.distance_m,
         greedy_distance_m=learner.greedy_distance_m if is_known else None,
         best_known_m=best_known_m(config, conditions),
         q_table_sha256=agent.table.sha256() if isinstance(agent, Tabular) else None,

@@ -349,6 +349,16 @@ def test_result_has_distance_greedy_distance_and_hash() -> None:
     )
 
 
+def test_result_takes_over_the_last_evaluation_to_the_bit() -> None:
+    learner, records = run(CONFIG)
+    last = records[-1]
+
+    assert isinstance(last, Evaluated)
+    assert training_result(learner, CONFIG, evaluated=last) == training_result(learner, CONFIG)
+    other = replace(last, distance_m=-1.0)
+    assert training_result(learner, CONFIG, evaluated=other).distance_m == -1
+
+
 def test_result_is_the_same_without_evaluations() -> None:
     quiet = replace(CONFIG, evaluate_every=0)
 
