@@ -405,8 +405,8 @@ class MujocoSimulator:
         return pose
 
     def torso(self, state: MujocoState) -> Sequence[float]:
-        torso: list[float] = self.pose(state)[:7].tolist()
-        return torso
+        x, y, *rest = state.row[1:8].tolist()
+        return [x + state.origin_m[0], y + state.origin_m[1], *rest]
 
     def dump(self, state: MujocoState) -> dict[str, FloatArray]:
         return {
