@@ -10,15 +10,14 @@ from typing import Any, NamedTuple
 
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
+from hexapods.domain.robot_documents import RobotDocument
 from hexapods.domain.short_repr import short_repr
 
 MIN_LEGS, MAX_LEGS = 3, 12
-NO_NUMBERS = ("name", "legs", "id", "model")
+NO_NUMBERS = ("name", "legs", "id", "document", "model")
 """Fields of a robot that are not a number; a robot from a file has a model."""
 _OPTIONAL = ("torso_length_m", "torso_width_m")
 """Fields of a robot that may be None."""
-_DOCUMENT = "document"
-"""In what is pickled of a stored robot: its document."""
 
 
 @dataclass(frozen=True)
@@ -149,15 +148,13 @@ class Robot:
     id: str | None = field(default=None, compare=False, kw_only=True)
     """Of the stored robot that it is, or from which its fields differ; None for a preset."""
 
-    def __getstate__(self) -> dict[str, Any]:
-        state = dict(vars(self))
-        if self.id is not None:
-            state[_DOCUMENT] = robot_documents.find(self.id, self.name)
-        return state
+    document: RobotDocument | None = field(default=None, compare=False, repr=False, kw_only=True)
+    """The document of the stored robot with this id; None for a preset."""
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        if (document := state.pop(_DOCUMENT, None)) is not None:
-            robot_documents.add(document)
+        """Restore a pickled robot, and let this process find its document by its id."""
+        if (document := state["document"]) is not None:
+            robot_documents.add(document.data)
         vars(self).update(state)
 
     def __post_init__(self) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from hexapods.domain import robot_documents
 from hexapods.domain.body import LegMount, Robot, ring
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GaitSpec, read_gait, resolve
@@ -255,9 +254,8 @@ PRESETS: dict[str, Robot] = {name: one.robot for name, one in CREATURES.items()}
 
 def own_gait(robot: Robot) -> str | GaitSpec:
     """Return the gait that suits a robot, or one by one if none is known for as many legs."""
-    if robot.id is not None:
-        about = robot_documents.about(robot.id)
-        gait = None if about is None or about.gait is None else read_gait(about.gait)
+    if robot.document is not None:
+        gait = None if robot.document.gait is None else read_gait(robot.document.gait)
         return "one-by-one" if gait is None or not _divides(gait, robot) else gait
     preset = CREATURES.get(robot.name.removesuffix(" (modified)"))
     if preset is None or len(preset.robot.legs) != len(robot.legs):

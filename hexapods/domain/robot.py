@@ -13,6 +13,7 @@ from hexapods.domain.errors import DamagedFile, InvalidInput, UnknownName
 from hexapods.domain.model_documents import model_content, read_model_content
 from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import JsonForm, Schema
+from hexapods.domain.robot_documents import RobotDocument
 from hexapods.domain.text import MAX_NAME
 
 __all__ = ["MAX_LEGS", "MIN_LEGS", "PRESETS", "LegMount", "Robot", "ring"]
@@ -146,8 +147,9 @@ def as_mapping(value: Robot) -> dict[str, Any]:
         InvalidInput: if it is a model's, and has no document.
     """
     name = value.name.removesuffix(_MODIFIED)
-    if value.id is not None:
-        return {"id": value.id, "name": name, **_differing(value, _by_id(value.id, name))}
+    if value.document is not None:
+        stored = parse_document(value.document.data)
+        return {"id": value.id, "name": name, **_differing(value, stored)}
     if isinstance(value, ModelRobot):
         raise InvalidInput(
             f"the robot {value.name} is of no document, by which it could be found again: take "
@@ -200,20 +202,22 @@ def read_document(data: bytes, name: str | None = None) -> Robot:
     """
     parsed = parse_document(data)
     robot_documents.add(data)
-    return replace(parsed, name=_name_of(robot_documents.id_of(data), name))
+    return _named(parsed, name)
 
 
 @lru_cache(maxsize=32)
 def parse_document(data: bytes) -> Robot:
-    """Return the robot of a document, without a name; errors as of `read_document`."""
+    """Return the robot of a document, without its name and gait; errors as of `read_document`."""
     content = robot_documents.decode(data)
     if "model" in content:
-        return replace(read_model_content(content), id=robot_documents.id_of(data))
+        parsed: Robot = read_model_content(content)
+        return replace(parsed, id=robot_documents.id_of(data), document=RobotDocument(data))
     values = content.pop("robot", None)
     # All of it, so that no other document holds the same robot.
     if content or not isinstance(values, dict) or {*values} | _BOX != {*RANGES, "legs"}:
         raise DamagedFile("the document of a robot is damaged: it must have its legs and numbers")
-    return replace(_changed(Robot(), values), id=robot_documents.id_of(data))
+    parsed = _changed(Robot(), values)
+    return replace(parsed, id=robot_documents.id_of(data), document=RobotDocument(data))
 
 
 def _stored(values: dict[str, Any]) -> Robot:
@@ -231,13 +235,21 @@ def _stored(values: dict[str, Any]) -> Robot:
 
 
 def _by_id(robot_id: str, name: str | None) -> Robot:
-    parsed = parse_document(robot_documents.find(robot_id, name))
-    return replace(parsed, name=_name_of(robot_id, name))
+    return _named(parse_document(robot_documents.find(robot_id, name)), name)
 
 
-def _name_of(robot_id: str, name: str | None) -> str:
+def _named(parsed: Robot, name: str | None) -> Robot:
+    """Return the robot of a document with the name and the gait that are stored beside it.
+
+    Args:
+        parsed: the robot.
+        name: its name where none is stored.
+    """
+    robot_id, document = str(parsed.id), parsed.document
     about = robot_documents.about(robot_id)
-    return (name or f"robot {robot_id[:6]}") if about is None else about.name
+    if about is None or document is None:
+        return replace(parsed, name=name or f"robot {robot_id[:6]}")
+    return replace(parsed, name=about.name, document=document._replace(gait=about.gait))
 
 
 def _leg_as_mapping(leg: LegMount) -> dict[str, float]:

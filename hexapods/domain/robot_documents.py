@@ -45,6 +45,18 @@ class About(NamedTuple):
     gait: Any = None
 
 
+class RobotDocument(NamedTuple):
+    """The document from which a robot was read, and the gait that was stored beside it.
+
+    Attributes:
+        data: the document.
+        gait: one that suits the robot, as in JSON; None if none is known.
+    """
+
+    data: bytes
+    gait: Any = None
+
+
 class Known(NamedTuple):
     """Stored robots that a process knows, to be given to another one.
 

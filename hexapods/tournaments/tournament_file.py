@@ -130,13 +130,13 @@ def tournament_file(
 
     Args:
         title: of the tournament.
-        rules: its rules; stored robots that they or an entry name must be known in this process.
+        rules: its rules.
         secret: from which the draws follow.
         entries: that were judged on all draws, ascending by their numbers.
         tables: files of the trained tables that entered.
 
     Raises:
-        InvalidInput: if a stored robot is not known here, or a name is not valid.
+        InvalidInput: if a name is not valid.
     """
     return TournamentFile(
         title=title,
@@ -147,9 +147,9 @@ def tournament_file(
         standings=tuple(standings_of({entry.number: entry.judgements for entry in entries})),
         tables={sha256_of(table): b64encode(table).decode() for table in tables},
         robots={
-            robot.id: json.loads(robot_documents.find(robot.id, robot.name))
+            robot_documents.id_of(robot.document.data): json.loads(robot.document.data)
             for robot in (rules.robot, *rules.robots)
-            if robot.id is not None
+            if robot.document is not None
         },
         versions=own_versions(),
         machine={**description(), PROBE: probe_m(rules, draws_of(rules, secret)[0])},
@@ -198,19 +198,13 @@ def sha256_of(table: bytes) -> str:
     return hashlib.sha256(table).hexdigest()
 
 
-def documents_of(tournament: TournamentFile) -> list[bytes]:
-    """Return the documents of its stored robots, as `hexapods.domain.robot_documents` has them."""
-    return [robot_documents.encode(document) for document in tournament.robots.values()]
-
-
 def write_file(tournament: TournamentFile) -> bytes:
     """Encode a tournament as JSON.
 
     Raises:
         TooLong: if `read_file` would not read it, as it is too large.
     """
-    with robot_documents.lent(documents_of(tournament)):
-        data = json.dumps(to_json(tournament), allow_nan=False, indent=1).encode()
+    data = json.dumps(to_json(tournament), allow_nan=False, indent=1).encode()
     if len(data) > MAX_BYTES:
         raise TooLong(
             f"the file of a tournament has at most {MAX_BYTES:,} bytes, not {len(data):,}"

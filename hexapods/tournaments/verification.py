@@ -6,7 +6,6 @@ from dataclasses import fields
 from itertools import chain
 from typing import NamedTuple
 
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.text import visible
 from hexapods.experiments.local_workers import local_pool
@@ -21,7 +20,6 @@ from hexapods.tournaments.tournament_file import (
     PROBE,
     JudgedEntry,
     TournamentFile,
-    documents_of,
     own_versions,
     probe_m,
     standings_of,
@@ -94,19 +92,18 @@ def verification(
             tables[entry.number] = _checked_table(entry.entry, tournament)
         except HexapodError as error:
             differences.append(f"{_name(entry)} cannot be judged: {visible(str(error))}.")
-    with robot_documents.lent(documents_of(tournament)):
-        judged = [entry for entry in tournament.entries if entry.number in tables]
-        pending = len(judged) * len(draws)
-        with local_pool(min(workers or cores(), max(1, pending))) as pool:
-            futures = {
-                entry.number: [
-                    pool.submit(judge, tournament.rules, entry.entry, draw, tables[entry.number])
-                    for draw in draws
-                ]
-                for entry in judged
-            }
-            for done, _ in enumerate(as_completed(chain(*futures.values())), start=1):
-                on_judged(done, pending)
+    judged = [entry for entry in tournament.entries if entry.number in tables]
+    pending = len(judged) * len(draws)
+    with local_pool(min(workers or cores(), max(1, pending))) as pool:
+        futures = {
+            entry.number: [
+                pool.submit(judge, tournament.rules, entry.entry, draw, tables[entry.number])
+                for draw in draws
+            ]
+            for entry in judged
+        }
+        for done, _ in enumerate(as_completed(chain(*futures.values())), start=1):
+            on_judged(done, pending)
     repeated = {number: [_result(task) for task in tasks] for number, tasks in futures.items()}
     ranks_hold = _ranks_hold(tournament, repeated)
     largest_m = None if differences or not ranks_hold else _largest_m(judged, repeated)
@@ -115,8 +112,7 @@ def verification(
     differences += _standing_differences(tournament, repeated)
     rounding = None
     if differences and largest_m is not None and largest_m <= LAST_DIGITS_M:
-        with robot_documents.lent(documents_of(tournament)):
-            rounding = _rounding(tournament, largest_m, draws[0])
+        rounding = _rounding(tournament, largest_m, draws[0])
     return Verification(differences, rounding, ranks_hold)
 
 

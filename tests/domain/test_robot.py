@@ -40,7 +40,7 @@ def test_the_default_robot_has_the_specified_parameters() -> None:
     default = asdict(Robot())
 
     assert {name: default[name] for name in figures} == figures
-    others = {"name", "legs", "id", "torso_length_m", "torso_width_m"}
+    others = {"name", "legs", "id", "document", "torso_length_m", "torso_width_m"}
     assert set(default) == {*figures, *others}
     assert list(Robot().azimuths_deg) == [0, 60, 120, 180, 240, 300]
     assert (Robot().swing_substeps, Robot().shift_substeps) == (50, 30)
