@@ -17,7 +17,7 @@ def is_secure(scope: Scope, settings: Settings) -> bool:
 
 
 _BEGINNINGS = ("hexapods_", "__Host-hexapods_")
-"""Of the names of all cookies that are read."""
+"""Prefixes of the names of all cookies that are read."""
 
 
 def kept_cookies(lines: Iterable[str]) -> Mapping[str, str]:

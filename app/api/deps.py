@@ -34,17 +34,17 @@ T = TypeVar("T")
 
 
 class PageFiles(NamedTuple):
-    """Where the files of the page are.
+    """Folders from which the page's files are served.
 
     Attributes:
         folder: of the dashboard, with its `index.html` and a folder `features`.
         without: names of the features whose folders are left out.
-        others: folders of the pages of features of other packages, by the feature's name.
+        added: folders of the pages of features of other packages, by the feature's name.
     """
 
     folder: Path
     without: Collection[str] = ()
-    others: Mapping[str, Path] = MappingProxyType({})
+    added: Mapping[str, Path] = MappingProxyType({})
 
 
 @dataclass(frozen=True)

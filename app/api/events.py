@@ -37,7 +37,7 @@ EVENT_STREAM: dict[str, Any] = {
     "response_class": EventSourceResponse,
     "openapi_extra": sends_events("EventBodies"),
 }
-"""How a route that yields `stream_events` is declared."""
+"""Keyword arguments that declare a route which yields `stream_events`."""
 
 router = api_router(prefix="/events", tags=["events"])
 

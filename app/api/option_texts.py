@@ -70,4 +70,4 @@ FIELD_TITLES = {
     "tags": "Tags",
     "notes": "Notes",
 }
-"""Of the fields of all forms that are no declared settings."""
+"""Titles of form fields that are not declared settings, by name."""

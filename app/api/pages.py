@@ -64,7 +64,7 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
         # The page's files are public; the data they show is not.
         *(
             GuardedFiles(f"/static/features/{name}", _Files(folder), public)
-            for name, folder in page_files.others.items()
+            for name, folder in page_files.added.items()
         ),
         GuardedFiles("/static", files, public, name="static"),
     ]
@@ -96,14 +96,14 @@ def page_features(page_files: PageFiles) -> list[dict[str, Any]]:
             "hasCode": (folder / "feature.js").is_file(),
             **json.loads((folder / "feature.json").read_text("utf-8")),
         }
-        for name, folder in {**folders, **page_files.others}.items()
+        for name, folder in {**folders, **page_files.added}.items()
     ]
 
 
 def _start_modules(name: str, features: list[dict[str, Any]], page_files: PageFiles) -> list[str]:
     """Return the modules that the dashboard loads at once because a feature has code for it."""
     at_once = [f["name"] for f in features if f["hasCode"] and "codeFor" not in f]
-    has_code = [feature for feature in at_once if feature not in page_files.others]
+    has_code = [feature for feature in at_once if feature not in page_files.added]
     return [f"static/features/{feature}/feature.js" for feature in has_code if name == _INDEX]
 
 

@@ -79,7 +79,7 @@ of them."""
 
 @dataclass(frozen=True, kw_only=True)
 class Policy:
-    """What the guards need to know of a route.
+    """Attributes of a route that the guards read.
 
     Attributes:
         access: who may use it.

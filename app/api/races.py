@@ -90,7 +90,7 @@ def get_timeline(
         document = timeline(lanes, run.lane_training_ids, config.steps, clock)
         return gzip.compress(msgspec.json.encode(document), compresslevel=1, mtime=0)
 
-    # Of a race that has ended it is computed once, for all who look at it.
+    # The timeline of a race that has ended is computed once, and cached for all clients.
     key = ("timeline", run.id, run.created_at, run.state, run.ended_at, clock)
     content = (
         compute() if run.state in NOT_ENDED else services.shared_answers.computed(key, compute)

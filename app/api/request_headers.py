@@ -46,7 +46,7 @@ READ_BEFORE = frozenset(
 )
 """Names of those that uvicorn, h11 and websockets read before the app is called."""
 MAX_BYTES = 8 << 10
-"""Of all lines of one header together."""
+"""Longest header that is read, over all lines of the same name."""
 
 
 class DeclaredHeaders:

@@ -10,7 +10,7 @@ from http import HTTPStatus
 import h11
 
 MAX_HEAD_BYTES = 32 << 10
-"""Of a request line with its headers: more than three of the longest headers that the app reads."""
+"""Longest request line with its headers: over three of the longest headers that the app reads."""
 MAX_HEAD_LINES = 128
 READ_BYTES = 16 << 10
 """Bytes of a connection that are read, and so parsed, at once: others have their turn between."""

@@ -44,7 +44,7 @@ class FairSemaphore:
         self._max_waiting = max_waiting
         self._held: Counter[str] = Counter()
         self._queues: OrderedDict[str, deque[_Waiter]] = OrderedDict()
-        """Of the clients that wait; the one whose turn is next first."""
+        """Waiting requests by client; the client whose turn is next comes first."""
         self._is_closed = False
 
     async def acquire(

@@ -50,7 +50,7 @@ class LimitedHttpProtocol(H11Protocol):
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override] # as uvicorn
         """Look the connection up in the table, and attach this protocol to it."""
         super().connection_made(transport)
-        # Of asyncio's transports, and kept when the connection becomes a websocket's.
+        # An attribute of asyncio's transports; it stays when the connection becomes a websocket.
         transport.max_size = READ_BYTES  # type: ignore[attr-defined]
         file = transport.get_extra_info("socket").fileno()
         self._connection: Connection | None = self.table.of_file(file)

@@ -303,7 +303,7 @@ class Stage:
         if run_id != self._run_id:
             return False
         self._world = world_of(changed)
-        # Of several events the bus keeps the newest: it may have ended once more.
+        # The bus keeps only the newest of several events: the race may have ended again since.
         return run.kind == "race" and run.state not in NOT_ENDED and changed.state != run.state
 
     def _show_next(self, now: float) -> None:
