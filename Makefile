@@ -13,8 +13,8 @@ DQN_STAMP := $(VENV)/.installed-dqn
 # The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
 PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
-# What the page offers, and PostgreSQL for the container; the checks need all but the deep network.
-RUN_EXTRAS := experiments postgres
+# PostgreSQL for the container; the checks need all but the deep network.
+RUN_EXTRAS := postgres
 DEV_EXTRAS := $(RUN_EXTRAS) cluster gym mcap parquet tuning video
 # On two cores: while one waits, for a process or a timer, two others work.
 TEST_PROCESSES := 3

@@ -15,7 +15,6 @@ from hexapods.domain.errors import InvalidInput
 
 MODULES: Mapping[str, tuple[str, ...]] = {
     "cluster": ("distributed",),
-    "experiments": ("matplotlib",),
     "gym": ("gymnasium",),
     "mcap": ("foxglove",),
     "parquet": ("pyarrow",),
@@ -44,16 +43,6 @@ def needs(extra: str, purpose: str) -> Iterator[None]:
         yield
     except ImportError as error:
         raise _missing(extra, purpose, error) from error
-
-
-def require(extra: str, purpose: str) -> None:
-    """Check that an extra is installed, before work whose end needs it.
-
-    Raises:
-        MissingExtra: if it is not; arguments as of `needs`.
-    """
-    if not is_installed(extra):
-        raise _missing(extra, purpose, ", ".join(MODULES[extra]))
 
 
 def _missing(extra: str, purpose: str, reason: object) -> MissingExtra:

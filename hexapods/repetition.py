@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, Union
+from typing import Any, NamedTuple, TypeVar, Union
 
 from numpy.typing import NDArray
 
@@ -44,10 +44,6 @@ from hexapods.files import path_of
 from hexapods.machine import cores
 from hexapods.result_table import ResultTable
 from hexapods.runs.config import SimulatorName
-
-if TYPE_CHECKING:
-    from hexapods.experiments.report.drawing import Picture
-
 
 _FIELDS = tuple(
     one.name
@@ -126,14 +122,8 @@ class Experiment:
         """Why each trial without a distance failed, by the trial in words."""
         return {trial["label"]: trial["reason"] for trial in failed_trials(self.summary["trials"])}
 
-    def figures(self) -> "list[Picture]":
-        """Return the figures of the report, drawn by Matplotlib, with their descriptions."""
-        from hexapods.experiments.report.figures import sheets  # noqa: PLC0415  # Matplotlib
-
-        return sheets(self.summary)
-
     def save_report(self, folder: str | os.PathLike[str]) -> Path:
-        """Write the report: its page, figures, all trials as CSV, and the summary.
+        """Write the report: its page, all trials as CSV, and the summary.
 
         Returns:
             the path of the page.
@@ -142,7 +132,7 @@ class Experiment:
             InvalidInput: if the folder is no path.
             OSError: if a file cannot be written.
         """
-        from hexapods.experiments.report import files  # noqa: PLC0415  # Matplotlib
+        from hexapods.experiments.report import files  # noqa: PLC0415  # slow to import
 
         target = path_of(folder, "a folder")
         return files.write_files(target, files.report_files(self.summary, self.trials))

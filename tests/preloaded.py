@@ -12,7 +12,6 @@ _IMPORTED_LATE = (
     "hexapods.experiments.summary",
     "hexapods.imports.reading",
     "hexapods.physics.mujoco_simulator",
-    "matplotlib.backends.backend_svg",
     "numpy.ma",
     "rich.console",
 )

@@ -22,21 +22,11 @@ GAIT_TEXTS = {
     "bound": "The legs in front move together, then all others; most bodies tip.",
     "one-by-one": "Each leg moves alone, while all others stand: steady, but many states.",
 }
-OBSERVATION_TEXTS = {
-    "measured": "Where the feet are, by the joint angles.",
-    "commanded": "Where the feet were last sent; the body's drift is not seen.",
-    "planned": "Where the feet would be if nothing had slipped, reckoned from the commands.",
-}
 CLOCK_TEXTS = {
     "paper": "A decision costs a share of a step's time for every future that was simulated.",
     "wall": "A decision costs the time that this computer took for it.",
     "free": "Thinking costs nothing.",
 }
-SIMULATOR_TEXTS = {
-    "mujoco": "Real physics: servos, contacts, friction.",
-    "kinematic": "The law of a step without slip: exact, and very quick.",
-}
-SIMULATOR_TITLES = {"mujoco": "MuJoCo physics", "kinematic": "ideal (no slip)"}
 FIELD_HELP = {
     "gait": "Which way is forward, and which legs move together.",
     "observation": "How the robot knows where its feet are.",
@@ -56,18 +46,3 @@ FIELD_HELP = {
     "best_known_where": best_known.COVERAGE,
     "agent": "Which agent learns.",
 }
-FIELD_TITLES = {
-    "gait": "Gait",
-    "robot": "Robot",
-    "robots": "Robots",
-    "simulator": "Simulator",
-    "agent": "Learner",
-    "lanes": "Lanes",
-    "name": "Name",
-    "world": "World",
-    "worlds": "Worlds",
-    "disturb": "Disturbances",
-    "tags": "Tags",
-    "notes": "Notes",
-}
-"""Titles of form fields that are not declared settings, by name."""

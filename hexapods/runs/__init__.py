@@ -5,6 +5,7 @@
 - `training` is the training loop with its evaluations, `racing` the race loop; both yield
   `records`. `walker` combines a simulator, its current state and an agent. `seeding` spawns
   independent random generators from one seed.
+- `catalogue` has names, titles, descriptions and limits, for the options and for reports.
 - `clocks` computes decision and motion times of a race, `results` its distances, times and ranks.
 - `recording` stores motion for playback; `stored_practice` encodes a training's recording as
   arrays, `race_file` a race's, by `step_arrays`; `step_figures` are figures of all steps as one

@@ -34,10 +34,6 @@ function learned(run) {
   return [["Q-table (CSV)", partOf(run, "q-table?format=csv")], ["Q-table (npz)", npz]];
 }
 
-/** @type {(run: RunKey, name: string) => string} */
-export const fileAddress = (run, name) =>
-  partOf(run, `files/${name.split("/").map(encodeURIComponent).join("/")}`);
-
 // ---- files of the page
 
 const KEPT_MS = 60_000;

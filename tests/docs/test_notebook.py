@@ -42,7 +42,7 @@ def test_both_figures_have_words_for_who_does_not_see_them(outputs: list[Any]) -
     alts = [figure["metadata"]["image/png"]["alt"] for figure in figures]
 
     assert len(alts) == 2
-    assert "Front-back, mirrored with commands remembered" in alts[0]
+    assert "front-back-vertical, commanded: " in alts[0]
     assert "2 seeds from" in alts[1]
 
 

@@ -1,16 +1,18 @@
 """People read the names of settings and trials; their keys are in machine-readable files only."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import Page
 
 from hexapods.domain.text import MAX_NAME
 from hexapods.experiments.config import experiment_config
 from hexapods.experiments.labels import world_name
 from hexapods.experiments.names import experiment_name, setting_names, trial_names
 from hexapods.experiments.plan import Plan
-from hexapods.experiments.report.page import page
 from hexapods.experiments.summary import summarise
+from tests.experiments.report.opened import opened, text_of
 from tests.experiments.sample_experiments import around, config, sample_results
 
 GAITS = ("left-right-origin", "left-right-vertical")
@@ -35,18 +37,16 @@ def sample(experiment: str, given: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("experiment", "given"), SAMPLES, ids=[name for name, _ in SAMPLES])
-def test_no_key_is_in_what_people_read(experiment: str, given: dict[str, Any]) -> None:
-    summary = sample(experiment, given)
-    told = page(summary) + "".join(one["text"] for one in summary["story"])
-    named = told.replace(summary_command(told), "")
+def test_no_key_is_in_what_people_read(
+    page: Page, tmp_path: Path, experiment: str, given: dict[str, Any]
+) -> None:
+    opened(page, tmp_path, sample(experiment, given))
+    # In the command names are meant to be typed.
+    page.locator(".making code").evaluate("(command) => command.remove()")
+    text = text_of(page)
     for words in ("/measured", "left-right-origin", "q-learning", "alpha"):
-        assert words not in named
-    assert "Q-learning" in named
-
-
-def summary_command(html: str) -> str:
-    """Return the command that repeats the experiment, in which names are meant to be typed."""
-    return html.partition('<code class="command">')[2].partition("</code>")[0]
+        assert words not in text
+    assert "Q-learning" in text
 
 
 def test_the_setting_of_a_sweep_that_spreads_most_is_told_in_words() -> None:

@@ -2,19 +2,21 @@
 
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import Page
 
 from app.features.experiments.response_models import SummaryView
 from hexapods.experiments.config import experiment_config
 from hexapods.experiments.plan import Plan
-from hexapods.experiments.report.page import page
 from hexapods.experiments.report.trials_csv import trials_csv
 from hexapods.experiments.summary import summarise
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worlds import mean_distance_m, steps_until
 from hexapods.runs.best_known import kept
+from tests.experiments.report.opened import opened, text_of
 
 LRO = "left-right-origin"
 WALKS_M = {"greedy": 0.5, "greedy/nominal": 0.1, "informed": 0.4}
@@ -98,14 +100,17 @@ def test_recovery_counts_from_when_it_happened() -> None:
 
 
 @pytest.mark.parametrize(("experiment", "share"), [("league", "95"), ("bodies", "90")])
-def test_steps_are_counted_to_a_share(experiment: str, share: str) -> None:
+def test_steps_are_counted_to_a_share(
+    page: Page, tmp_path: Path, experiment: str, share: str
+) -> None:
     found = summary(experiment, (0.1, 0.46), steps=(50,), agents=("q-learning",))
     learners = [one for one in found["worlds"] if one["role"] == "learner"]
     assert {one["until_greedy"]["of"] for one in learners} == {int(share) / 100}
     # 0.4615 m is 92 % of greedy's 0.5015 m.
     median = {"95": None, "90": 50}[share]
     assert {one["until_greedy"]["median_steps"] for one in learners} == {median}
-    assert f"Steps to {share}\u00a0% of best known" in page(found)
+    opened(page, tmp_path, found)
+    assert f"Steps to {share} % of greedy" in text_of(page)
 
 
 def test_half_grown_league_has_what_its_trials_show() -> None:
@@ -117,14 +122,20 @@ def test_half_grown_league_has_what_its_trials_show() -> None:
 
 
 @pytest.mark.parametrize("experiment", ["league", "recovery"])
-def test_report_shows_each_world_with_its_references(experiment: str) -> None:
+def test_report_shows_each_world_with_its_references(
+    page: Page, tmp_path: Path, experiment: str
+) -> None:
     steps = {"steps": (50,)} if experiment == "league" else {}
     curve_m = (0.1, 0.5) if experiment == "league" else (0.1, 0.2, 0.3, 0.4, 0.5, 0.5)
-    text = page(summary(experiment, curve_m, worlds=("limp-pair", "slope:degrees=4"), **steps))
+    worlds = ("limp-pair", "slope:degrees=4")
+    opened(page, tmp_path, summary(experiment, curve_m, worlds=worlds, **steps))
+    text = text_of(page)
 
-    assert "Two limp legs, Left-right, opposite; best known" in text
-    assert "Slope (slope 4.0), Left-right, opposite</figcaption>" in text
+    assert "Two limp legs: metres" in text
+    assert "Best known" in text
     assert "Greedy, nominal model" in text
     assert "Greedy, true model" in text
-    assert "within 3&nbsp;% of its design" in text
-    assert ("Earned in 1–50" in text) == (experiment == "recovery")
+    assert "within 3 % of its design" in text
+    assert ("Earned: the sum of the rewards" in text) == (experiment == "recovery")
+    page.get_by_role("button", name="Slope").click()
+    assert "4°" in text_of(page)

@@ -2,14 +2,8 @@
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
-import { downloads, fileAddress } from "../../static/js/files.js";
+import { downloads } from "../../static/js/files.js";
 import { makeRun } from "./options.js";
-
-test("addresses of files are escaped part by part", () => {
-  const run = { kind: /** @type {const} */ ("experiment"), id: "a b" };
-  assert.equal(fileAddress(run, "figures/one two.png"),
-    "http://page.test/api/v1/experiments/a%20b/files/figures/one%20two.png");
-});
 
 test("no link has `download` without a value, which would call its file true", () => {
   const folder = new URL("../../static/", import.meta.url);

@@ -5,20 +5,20 @@ set aside: it is named in the summary and in the report, and all others complete
 that they have without it. In full: on MuJoCo, with five poisonous trials among a hundred.
 """
 
-from html import unescape
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Page
 
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.engine import run_trials
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Plan
-from hexapods.experiments.report.page import page
 from hexapods.experiments.summary import summarise
 from tests.experiments.clusters import CRASHING, one_by_one
 from tests.experiments.crashing_agent import FOLDER, set_crashes, tries
+from tests.experiments.report.opened import opened, text_of
 from tests.promises.length import at_length
 
 pytestmark = pytest.mark.test
@@ -45,7 +45,7 @@ def run_undone(folder: ResultsFolder) -> None:
 
 @pytest.mark.timeout(at_length(120, 1200))
 def test_a_trial_that_kills_its_worker_three_times_is_set_aside_and_the_rest_completes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(FOLDER, str(tmp_path))
     trials = list(Plan(CONFIG).trials())
@@ -67,8 +67,10 @@ def test_a_trial_that_kills_its_worker_three_times_is_set_aside_and_the_rest_com
     reasons = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
     assert reasons == dict.fromkeys(keys, "it ended its worker's process 3 times")
     assert summary["trials"]["done"] == len(trials) - len(crashing)
-    report = unescape(page(summary))
+    opened(page, tmp_path, summary)
+    report = text_of(page)
     for one in summary["trials"]["set_aside"]:
-        assert f"{one['label']} was set aside: {one['reason']}" in report
+        label = one["label"].replace("\xa0", " ")
+        assert f"{label} was set aside: {one['reason']}" in report
     set_crashes(tmp_path, [])
     assert results == one_by_one(trial for trial in trials if trial.key not in keys)

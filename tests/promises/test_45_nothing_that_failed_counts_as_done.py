@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import Page
 
 import hexapods as hx
-from hexapods.experiments.report.page import page
 from hexapods.experiments.report.trials_csv import trials_csv
 from tests.cli.running import in_process
+from tests.experiments.report.opened import opened, text_of
 from tests.own_agents import Clumsy
 
 QUICK: dict[str, Any] = {"simulator": "kinematic", "gaits": "left-right-origin", "workers": 1}
@@ -26,7 +27,9 @@ ON_COMMAND_LINE = ("--gait", "left-right-origin", "--simulator", "kinematic")
 TRIPPED = "I tripped"
 
 
-def test_failed_trials_are_told_where_the_result_is_returned_and_printed() -> None:
+def test_failed_trials_are_told_where_the_result_is_returned_and_printed(
+    page: Page, tmp_path: Path
+) -> None:
     with pytest.warns(UserWarning, match=r"2 of 5 trials failed.*Clumsy.*I tripped"):
         done = hx.experiment("sweep", agents=[hx.Sarsa, Clumsy], seeds=2, steps=5, **QUICK)
     assert done.summary["trials"]["failed"] == 2
@@ -38,7 +41,8 @@ def test_failed_trials_are_told_where_the_result_is_returned_and_printed() -> No
     }
     assert by_agent == {"Greedy": (1, 0), "Sarsa": (2, 0), "Clumsy": (0, 2)}
     assert [setting["failed"] for setting in done.summary["settings"]] == [0, 0, 2]
-    for shown in (repr(done), done._repr_html_(), page(done.summary)):
+    opened(page, tmp_path, done.summary)
+    for shown in (repr(done), done._repr_html_(), text_of(page)):
         assert "2 of 5 trials failed" in shown.replace("&nbsp;", " ")
         assert TRIPPED in shown
     set_aside = {one["key"]: one["reason"] for one in done.summary["trials"]["set_aside"]}

@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
@@ -26,13 +25,15 @@ from app.storage.untrusted_input import (
 from hexapods.domain.checks import check_format
 from hexapods.domain.errors import DamagedFile, OtherFormat
 from hexapods.domain.text import is_formula
-from hexapods.experiments.config import SUMMARY, SUMMARY_FORMAT, ExperimentConfig
+from hexapods.experiments.config import (
+    REPORT,
+    SUMMARY,
+    SUMMARY_FORMAT,
+    TRIALS_TABLE,
+    ExperimentConfig,
+)
 
 TRIALS = "trials.json"
-_REPORT_FILE = re.compile(
-    r"report\.html|summary\.json|trials\.csv|figures/[a-z0-9_-]{1,80}\.(png|svg|pdf)", re.ASCII
-)
-_SIGNATURES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
 
 
 class _Lane(UntrustedInput, frozen=True):
@@ -139,7 +140,7 @@ def read_trials_json(data: bytes, config: ExperimentConfig, label: str) -> list[
 
 def is_report_file(name: str) -> bool:
     """Whether an experiment may have a file of this name."""
-    return _REPORT_FILE.fullmatch(name) is not None
+    return name in (REPORT, SUMMARY, TRIALS_TABLE)
 
 
 def check_report_files(
@@ -158,12 +159,9 @@ def check_report_files(
         DamagedFile: if a file is unexpected or malformed.
     """
     for name, data in files.items():
-        suffix = name.rpartition(".")[2]
         if not is_report_file(name) or name not in names:
             raise DamagedFile(f"{label} has {name}, which this experiment has not")
-        if not data.startswith(_SIGNATURES.get(suffix, b"")):
-            raise DamagedFile(f"{label} has {name}, which is no {suffix.upper()}")
-        if suffix == "csv":
+        if name == TRIALS_TABLE:
             _check_cells(data, f"{name} of {label}")
     if SUMMARY not in files:
         return

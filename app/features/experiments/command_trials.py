@@ -16,7 +16,6 @@ from hexapods.experiments.config import REPORT, ExperimentConfig
 from hexapods.experiments.failures import failures_text
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Trial
-from hexapods.extras import require
 from hexapods.interruption import stop_signals
 from hexapods.machine import cores
 
@@ -39,7 +38,6 @@ def run_experiment(
     Raises:
         HexapodError: if the experiment cannot be run or completed; finished trials are stored.
     """
-    require("experiments", "an experiment")
     path: Path = options.out or Path(f"{config.experiment}-results")
     print_line = discard if options.json else print
     with open_results(path, config) as folder:
@@ -78,7 +76,7 @@ def _run(
 
 
 def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
-    # Imported here, as Matplotlib takes a second to import.
+    # Imported here, where they are needed first.
     from hexapods.experiments.report.files import report_files, write_files  # noqa: PLC0415
     from hexapods.experiments.summary import summarise  # noqa: PLC0415
 

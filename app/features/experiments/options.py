@@ -3,7 +3,6 @@
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from app.api.option_texts import SIMULATOR_TEXTS
 from app.features.experiments.start import MAX_SETTINGS
 from hexapods.domain.records import to_json
 from hexapods.experiments.config import (
@@ -14,6 +13,7 @@ from hexapods.experiments.config import (
     settings_by_name,
 )
 from hexapods.experiments.presets import GRID, PRESETS
+from hexapods.runs.catalogue import SIMULATOR_TEXTS
 
 LIMITS = {"seeds": [1, MAX_SEEDS], "trials": [1, MAX_TRIALS], "settings": [1, MAX_SETTINGS]}
 FIELD_HELP = {

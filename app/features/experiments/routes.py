@@ -1,12 +1,13 @@
 """Routes of experiments: summary, trials, report and its files."""
 
+import json
 from typing import Annotated, Any, Literal
 
 from fastapi import Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import RaceView, TrainingView
-from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
+from app.api.contract import ATTACHMENT, LOCATION, TEXT, answers
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment, file_response, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
@@ -27,29 +28,26 @@ from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
 from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.records import to_json
-from hexapods.experiments.config import REPORT, SUMMARY, SUMMARY_FORMAT, ExperimentConfig
+from hexapods.experiments.config import SUMMARY, SUMMARY_FORMAT, ExperimentConfig
+from hexapods.experiments.report.page import page
 from hexapods.experiments.result import ExperimentResult
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'self'; sandbox allow-popups"
 )
-"""Content security policy of reports, which need no scripts: a forged one can run none."""
+"""Content security policy of stored files: a forged report can run no scripts."""
+_PAGE_POLICY = "sandbox allow-scripts allow-popups allow-downloads; frame-ancestors 'self'"
+"""Policy of a report that is made here, in addition to its own; it has no origin."""
 _MEDIA_TYPES = {
     ".html": "text/html; charset=utf-8",
     ".json": "application/json",
     ".csv": "text/csv; charset=utf-8",
-    ".png": "image/png",
-    ".svg": "image/svg+xml",
-    ".pdf": "application/pdf",
 }
 _FILE_SCHEMAS: dict[str, dict[str, Any]] = {
     "text/html": TEXT,
     "application/json": {"$ref": "#/components/schemas/SummaryView"},
     "text/csv": TEXT,
-    "image/png": BINARY,
-    "image/svg+xml": TEXT,
-    "application/pdf": BINARY,
 }
 
 router = run_routes("experiment", ExperimentView, ExperimentPage, changed_by=OPERATOR)
@@ -76,7 +74,15 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
 def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the whole report as one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
-    return _report_response(run, REPORT, _open_report_file(services, run, REPORT), "inline")
+    _open_report_file(services, run, SUMMARY).close()
+    summary = json.loads(services.store.artifact(run.id, SUMMARY) or b"{}")
+    # Made anew: a stored one may be forged, and runs scripts.
+    content = page({**summary, "config": to_json(run.config)})
+    headers = {
+        "Content-Disposition": f'inline; filename="report-{run.id}.html"',
+        "Content-Security-Policy": _PAGE_POLICY,
+    }
+    return Response(content, media_type="text/html; charset=utf-8", headers=headers)
 
 
 @router.get(

@@ -13,7 +13,6 @@ from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.names import experiment_name
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.presets import GRID
-from hexapods.extras import require
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
 
 MAX_SETTINGS = 2_000
@@ -35,12 +34,7 @@ class ExperimentStart:
     workers: int | None = None
 
     def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:  # noqa: ARG002
-        """See `Start`.
-
-        Raises:
-            MissingExtra: if the report could not be drawn.
-        """
-        require("experiments", "an experiment")
+        """See `Start`."""
         config, workers = self.config, self.workers
         plan = plan_of(config)
         cores = os.cpu_count() or 1

@@ -169,7 +169,7 @@ class _SentProgress(Progress):
 
     def report(self) -> None:
         """Send the files of the report."""
-        from hexapods.experiments.report.files import report_files  # noqa: PLC0415 - it brings Matplotlib
+        from hexapods.experiments.report.files import report_files  # noqa: PLC0415 - needed once
 
         self.flush()
         self._is_stale = True

@@ -6,10 +6,10 @@ from typing import Any, ClassVar
 from fastapi import APIRouter
 
 from app.api.option_answers import SettingOption
-from app.api.options import setting_option
 from app.feature import Feature
 from app.features.robots import routes
 from app.features.robots.body_fields import leg_fields, torso_fields
+from hexapods.runs.catalogue import setting_option
 
 
 class RobotFeature(Feature):

@@ -14,7 +14,6 @@ from starlette.routing import BaseRoute
 
 from app.api.deps import Services
 from app.api.option_answers import SettingOption
-from app.api.options import setting_option
 from app.api.pages import page_content
 from app.feature import DeleteRuns, Feature
 from app.features.tournaments import pages, routes
@@ -29,6 +28,7 @@ from app.features.tournaments.views import publish, tournaments_of_room
 from app.settings import Settings
 from app.storage.database.store import RunStore
 from hexapods.machine import cores
+from hexapods.runs.catalogue import setting_option
 
 _BACKUP = "put a backup of the database back; without one the server goes on, and leaves them out"
 

@@ -1,4 +1,4 @@
-"""Write an experiment's report as files: the page, figures, all trials as CSV, and the summary."""
+"""Write an experiment's report as files: the page, all trials as CSV, and the summary."""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
@@ -7,8 +7,6 @@ from typing import Any
 
 from hexapods.domain.records import from_json
 from hexapods.experiments.config import REPORT, SUMMARY, TRIALS_TABLE, ExperimentConfig
-from hexapods.experiments.report.drawing import FORMATS, render
-from hexapods.experiments.report.figures import sheets
 from hexapods.experiments.report.page import page
 from hexapods.experiments.report.trials_csv import trials_csv
 from hexapods.experiments.trial import TrialResult
@@ -32,10 +30,6 @@ def report_files(
         TRIALS_TABLE,
         trials_csv(from_json(ExperimentConfig, summary["config"]), results, set_aside),
     )
-    for kind in FORMATS:
-        # Drawn again for each format: rendering changes a figure's constrained layout slightly.
-        for picture in sheets(summary):
-            yield f"figures/{picture.name}.{kind}", render(picture.figure, kind)
     yield REPORT, page(summary).encode()
 
 

@@ -2,10 +2,9 @@
 import { signal } from "@preact/signals";
 import { count, metres, THIN_SPACE } from "../../js/format.js";
 import { largest } from "../../js/scale.js";
-import { chosenRun } from "./runs.js";
 
 /** @import { Line, Mark } from "../../js/chart.js" */
-/** @import { Place, Setting } from "../../js/types.js" */
+/** @import { Place, Setting, Summary } from "../../js/types.js" */
 
 // ---- places: observation, robot and foot grid
 
@@ -118,10 +117,11 @@ const MIN_TOP = 1e-9;
 
 /**
  * @param {Line[]} lines of all charts
+ * @param {Summary["config"]} config of the experiment, whose charts are zoomed together
  * @param {string} words what the steps are
  */
-export const stepsAxis = (lines, words = "steps of practice") => ({
-  axis: `report ${chosenRun.value?.id}`, max: largest(lines.flatMap(({ xs }) => xs), 1), unit: words,
+export const stepsAxis = (lines, config, words = "steps of practice") => ({
+  axis: `report ${JSON.stringify(config)}`, max: largest(lines.flatMap(({ xs }) => xs), 1), unit: words,
   text: (/** @type {number} */ steps) => count(steps, "step"),
 });
 

@@ -9,6 +9,7 @@ import { customRobotInWords, presetOf, storedName } from "../../js/robots.js";
 import { everyRun, isActive } from "../../js/selectors.js";
 import { connection, options, setEntry } from "../../js/store.js";
 import { fieldTitle, observationTitle, rewardInWords, simulatorTitle } from "../../js/titles.js";
+import { experimentKind } from "./kinds.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Feature, Run } from "../../js/types.js" */
@@ -45,9 +46,6 @@ const sweptIn = (config) =>
     Array.isArray(values) && values.length > 1 && !TOLD_APART.includes(name)
       ? [`${fieldTitle(name)} ${values.join(", ")}`]
       : []);
-
-/** What the server says of an experiment; undefined where it has none of this name. @param {string} name */
-export const experimentKind = (name) => options.value?.experiments?.find((kind) => kind.name === name);
 
 /**
  * An experiment's swept values, seeds and places in one line.

@@ -3,7 +3,7 @@ import { count, duration, listed, percentage, sentence, whole } from "../../js/f
 import { customRobotInWords, presetOf, storedName } from "../../js/robots.js";
 import { served } from "../../js/store.js";
 import { agentTitle, gaitTitle, observationTitle, rewardInWords, simulatorTitle } from "../../js/titles.js";
-import { experimentKind } from "./feature.js";
+import { experimentKind } from "./kinds.js";
 
 /** @import { RobotConfig, Run, Summary } from "../../js/types.js" */
 

@@ -13,7 +13,7 @@ from hexapods.domain.records import to_json
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.presets import GRID
-from hexapods.experiments.report.page import command
+from hexapods.experiments.report.command import command
 from tests.experiments.sample_experiments import ROBOTS
 
 LRO = "left-right-origin"

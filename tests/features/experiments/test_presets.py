@@ -12,7 +12,7 @@ from hexapods.experiments.config import experiment_config
 from hexapods.experiments.names import experiment_name
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.presets import PRESETS, Preset
-from hexapods.experiments.report.page import command
+from hexapods.experiments.report.command import command
 from tests.cli.running import in_process, refusal
 
 TWO_WORLDS = Preset(

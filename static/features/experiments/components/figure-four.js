@@ -22,7 +22,7 @@ export function FigureFour({ known }) {
   const place = places.find(({ key }) => key === chosen) ?? places[0];
   const here = curves.filter((one) => placeOf(one) === place.key).map(toUnit);
   const charts = here.map((one) => ({ lines: [one], marks: asMarks(levelsOf(one)) }));
-  const axes = { x: stepsAxis(here), y: distanceAxis(charts) };
+  const axes = { x: stepsAxis(here, known.config), y: distanceAxis(charts) };
   const gaits = [...new Set(here.map(({ gait }) => gait))];
   const agents = [...new Set(here.map(({ agent }) => agent))];
   return html`

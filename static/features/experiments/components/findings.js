@@ -16,14 +16,17 @@ import { html } from "../../../js/components/elements.js";
 // ---- all gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out
 
 const BEATS_GREEDY = "Beats it at time-out";
+const OF_BEST = "Of best known";
 const SHARES = "Share of greedy’s distance, a dot for each seed";
 const POOLED_COLUMNS = [
   { title: "Setting" },
   { title: SHARES, kind: "wide-cell" },
   { title: "Interquartile mean", words: "Interquartile mean, with its 95 % interval" },
+  { title: OF_BEST, words: "Of the best known distance, where there is one" },
   { title: "Share that walks", words: "Get at least half as far as greedy" },
   { title: "Reach greedy", words: "Get at least 95 % as far" },
   { title: BEATS_GREEDY, words: "Under the paper clock" },
+  { title: "Seeds" },
 ];
 const MARKS = [{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }];
 const POOLED_VERDICTS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
@@ -38,7 +41,9 @@ export function AtAGlance({ known }) {
   const isRaced = pooled.some(({ relative_finished }) => relative_finished);
   const isOfSeveral = pooled.some(({ gaits }) => gaits.length > 1);
   const heading = isOfSeveral ? "All gaits together" : "All seeds together";
-  const columns = POOLED_COLUMNS.filter(({ title }) => isRaced || title !== BEATS_GREEDY);
+  const hasBest = pooled.some(({ of_best_known }) => of_best_known);
+  const hidden = [!isRaced && BEATS_GREEDY, !hasBest && OF_BEST];
+  const columns = POOLED_COLUMNS.filter(({ title }) => !hidden.includes(title));
   return html`
     <section class="panel glance" aria-labelledby="glance">
       <h2 id="glance">${heading}</h2>
@@ -52,7 +57,8 @@ export function AtAGlance({ known }) {
           </tr></thead>
           <tbody role="rowgroup">
             ${pooled.map((one, n) => html`
-              <${PooledRow} key=${n} one=${one} varied=${varied} points=${points[n]} high=${high} isRaced=${isRaced} />
+              <${PooledRow} key=${n} one=${one} varied=${varied} points=${points[n]} high=${high} isRaced=${isRaced}
+                hasBest=${hasBest} />
             `)}
           </tbody>
         </table>
@@ -61,10 +67,27 @@ export function AtAGlance({ known }) {
   `;
 }
 
-/** @param {{ one: PooledView, varied: string[], points: number[], high: number, isRaced: boolean }} props */
-function PooledRow({ one, varied, points, high, isRaced }) {
-  const { iqm, low, high: end } = /** @type {Interval} */ (one.relative);
-  const interval = low === null || end === null ? null : `${Math.round(100 * low)} – ${percentage(end)}`;
+/**
+ * A share with its interval below it.
+ * @param {{ share: Interval | PooledView["walkers"] | undefined }} props
+ */
+function Share({ share }) {
+  if (!share) return "–";
+  const { low, high } = share;
+  return html`
+    ${percentage("iqm" in share ? share.iqm : share.share)}${low !== null && high !== null && html`
+      <br /><span class="dim">${Math.round(100 * low)} – ${percentage(high)}</span>
+    `}
+  `;
+}
+
+/**
+ * @param {{
+ *   one: PooledView, varied: string[], points: number[], high: number, isRaced: boolean, hasBest: boolean
+ * }} props
+ */
+function PooledRow({ one, varied, points, high, isRaced, hasBest }) {
+  const { iqm } = /** @type {Interval} */ (one.relative);
   const label = `${points.length} seeds, typically ${percentage(iqm)} of greedy’s distance`;
   return html`
     <tr role="row">
@@ -74,13 +97,15 @@ function PooledRow({ one, varied, points, high, isRaced }) {
           color=${agentOf(one.agent).color} height=${44} axis=${percentage} />
       </td>
       <td role="cell" data-label="Interquartile mean" class="num">
-        ${percentage(iqm)}${interval && html`<br /><span class="dim">${interval}</span>`}
+        <${Share} share=${one.relative} />
       </td>
-      <td role="cell" data-label="Share that walks" class="num">${percentage(one.walkers?.share ?? NaN)}</td>
-      <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy?.share ?? NaN)}</td>
+      ${hasBest && html`<td role="cell" data-label=${OF_BEST} class="num"><${Share} share=${one.of_best_known} /></td>`}
+      <td role="cell" data-label="Share that walks" class="num"><${Share} share=${one.walkers} /></td>
+      <td role="cell" data-label="Reach greedy" class="num"><${Share} share=${one.reaches_greedy} /></td>
       ${isRaced && html`
         <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${one.beats_greedy} /></td>
       `}
+      <td role="cell" data-label="Seeds" class="num">${whole(one.n)}</td>
     </tr>
   `;
 }
@@ -176,6 +201,10 @@ const VERDICTS = {
 export const Claims = ({ claims, isComplete }) => claims.length > 0 && html`
   <section class="panel claims" aria-labelledby="claims">
     <h2 id="claims">The paper’s claims over all seeds</h2>
+    <p class="dim">
+      The paper says neither how the state is read nor how stiff the servos are, so each claim is judged in every case
+      that was tried. “Not established” means that the 95 % interval leaves it open.
+    </p>
     ${!isComplete && html`<p class="dim">So far: a verdict may change until the last trial has ended.</p>`}
     <ul>${claims.map((one) => html`<${Claim} key=${one.id} ...${one} />`)}</ul>
   </section>

@@ -4,35 +4,23 @@ import { pending, runAgain } from "../../../js/actions.js";
 import { setFormOf } from "../form.js";
 import { forgetPreset } from "../presets.js";
 import { command, deleteExperiment, summary, summaryError } from "../runs.js";
+import { showSeed } from "../seeds.js";
 import { configInWords, findingIn } from "../words.js";
-import { downloads, fileAddress, partOf } from "../../../js/files.js";
-import { count, duration } from "../../../js/format.js";
+import { downloads, partOf } from "../../../js/files.js";
 import { addressOf, page } from "../../../js/page-state.js";
 import { isActive, isOperator } from "../../../js/selectors.js";
-import { messageOf, simulatorTitle } from "../../../js/titles.js";
+import { messageOf } from "../../../js/titles.js";
 import { html, Icon, ProgressBar } from "../../../js/components/elements.js";
 import { Problem } from "../../../js/components/foot.js";
 import { editHere, EditorOf, isEdited } from "../../../js/components/runs/annotations.js";
+import { Findings } from "./all-findings.js";
 import { formIsOpen, unsayable } from "./dialog.js";
-import { FigureFour } from "./figure-four.js";
-import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
 import { Seeds } from "./seeds.js";
 import { StateOf } from "./state-of.js";
-import { SweepTable } from "./sweep-table.js";
-import { TableOne } from "./table-one.js";
-import { Worlds } from "./worlds.js";
-import { experimentKind, paceOf, runTitle } from "../feature.js";
+import { paceOf, runTitle } from "../feature.js";
 
-/** @import { Run, State, Summary, Verb } from "../../../js/types.js" */
+/** @import { Run, State, Verb } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
-
-/** The table or chart of an experiment, by what it measures. @param {Summary} known */
-function figureOf({ experiment }) {
-  const kind = experimentKind(experiment);
-  if (!kind) return null;
-  if (kind.measure === "distance") return kind.takes_settings ? SweepTable : TableOne;
-  return kind.measure === "blocks" ? FigureFour : Worlds;
-}
 
 /** Id of the menu from which name, tags and notes are changed. */
 const MORE = "more-of-report";
@@ -41,7 +29,9 @@ const MORE = "more-of-report";
 export function Report({ run }) {
   const known = summary.value;
   // Progress changes several times a second, the summary seldom.
-  const findings = useMemo(() => html`<${Findings} known=${known} />`, [known]);
+  const findings = useMemo(() => html`
+    <${Findings} known=${known} onSeed=${showSeed}><${Seeds} known=${known} /><//>
+  `, [known]);
   const hasSeeds = known?.settings?.some(({ n }) => n > 0);
   const finding = findingIn(known);
   return html`
@@ -78,22 +68,6 @@ function OwnWords({ run }) {
 
 /** @param {Run} run */
 const soFar = (run) => run.state !== "finished" && html`<span class="so-far">So far: </span>`;
-
-/** @param {{ known: Summary }} props */
-function Findings({ known }) {
-  const Figure = figureOf(known);
-  return html`
-    <${LeftOut} trials=${known.trials} />
-    ${Figure && html`<${Figure} known=${known} />`}
-    <${Seeds} known=${known} />
-    ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
-    <${Versus} known=${known} />
-    <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
-    <${Narrative} parts=${known.story ?? []} />
-    <${FairClocks} timed=${known.timed ?? []} />
-    <${Making} known=${known} />
-  `;
-}
 
 /** @type {Partial<Record<State, string>>} */
 const WORDS = {
@@ -230,95 +204,12 @@ function DeleteButton({ run }) {
 /** @param {Run} run */
 const hasReport = (run) => Boolean(run.result?.files?.includes("report.html"));
 
-/** What can be taken away: the report, the numbers and the figures. @param {{ run: Run }} props */
+/** What can be taken away: the report and the numbers. @param {{ run: Run }} props */
 function Files({ run }) {
-  const files = run.result?.files ?? [];
-  const figures = files.filter((name) => /\.(png|svg|pdf)$/.test(name));
   return html`
     ${hasReport(run) && html`
       <a href=${partOf(run, "report")} target="_blank" rel="noopener">Open the report</a>
     `}
     ${downloads(run).map(([title, href]) => html`<a href=${href} download="">${title}</a>`)}
-    ${figures.length > 0 && html`
-      <p class="menu-part dim">Figures</p>
-      ${figures.map((name) => html`<a href=${fileAddress(run, name)} download="">${name.split("/").at(-1)}</a>`)}
-    `}
-  `;
-}
-
-// ---- trials without a distance, with the reasons
-
-/** @param {{ trials: Summary["trials"] }} props */
-function LeftOut({ trials }) {
-  const aside = trials.set_aside ?? [];
-  const failures = trials.failures ?? [];
-  // Summaries of earlier versions count those that were set aside apart.
-  const failed = Math.max(trials.failed, failures.length + aside.length);
-  if (!failed) return null;
-  const counts = [`${count(failed, "trial")} failed`, aside.length && `${aside.length} of them set aside`];
-  return html`
-    <section class="panel left-out" aria-labelledby="left-out">
-      <h2 id="left-out">Left out: ${counts.filter(Boolean).join(", ")}</h2>
-      <p class="dim">
-        A trial is set aside when it has killed its worker three times, or cannot be run. All others are in the figures.
-      </p>
-      <details class="more">
-        <summary>Which, and why</summary>
-        <ul>
-          ${[...failures, ...aside].map(({ label, key, reason }) => html`
-            <li>${label ?? key}: <span class="dim">${reason}</span></li>
-          `)}
-        </ul>
-      </details>
-    </section>
-  `;
-}
-
-// ---- what is needed to repeat it: seeds, versions, machine and time
-
-/** @param {(string | 0 | false | null | undefined)[]} parts */
-const joined = (parts) => parts.filter(Boolean).join(", ");
-
-
-/** @param {Summary} known */
-const simulatorOf = ({ config, versions = {} }) => {
-  const version = config.simulator === "mujoco" ? versions.mujoco : null;
-  return [simulatorTitle(config.simulator), version].filter(Boolean).join(" ");
-};
-
-/** @param {Summary} known */
-const versionsOf = ({ versions = {} }) =>
-  joined(Object.entries(versions).filter(([name]) => name !== "mujoco").map(([name, version]) => `${name} ${version}`));
-
-/** @param {Summary} known */
-const machineOf = ({ machine = {} }) => joined([machine.platform, machine.cores && count(machine.cores, "core")]);
-
-/** @param {{ cost: Summary["cost"] }} one */
-const timeOf = ({ cost }) =>
-  cost && joined([
-    cost.wall_s && duration(cost.wall_s),
-    cost.trials_per_s && `${cost.trials_per_s.toPrecision(3)} trials a second`,
-    cost.workers && count(cost.workers, "worker"),
-  ]);
-
-/** @param {{ known: Summary }} props */
-function Making({ known }) {
-  const { seeds, seed } = known.config;
-  const rows = [
-    ["Seeds", `${count(seeds, "seed")}, spawned from ${seed}`],
-    ["Simulator", simulatorOf(known)],
-    ["Versions", versionsOf(known)],
-    ["Machine", machineOf(known)],
-    ["Time", timeOf(known)],
-  ];
-  return html`
-    <section class="panel making" aria-labelledby="making">
-      <h2 id="making">Method</h2>
-      <dl>
-        ${rows.filter(([, value]) => value !== undefined && value !== null).map(([name, value]) => html`
-          <div><dt>${name}</dt><dd>${value}</dd></div>
-        `)}
-      </dl>
-    </section>
   `;
 }

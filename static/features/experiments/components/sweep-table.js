@@ -1,7 +1,6 @@
 // The settings of a sweep with every seed: the fields that vary, distances, share that walks.
 import { useState } from "preact/hooks";
 import { bare, factorOf, greedyTotals, inUnit, shown } from "../distances.js";
-import { showSeed } from "../seeds.js";
 import { count, percentage } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
@@ -11,6 +10,7 @@ import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Segments } from "../../../js/components/elements.js";
 import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 
+/** @import { OnSeed } from "./all-findings.js" */
 /** @import { Setting, Summary } from "../../../js/types.js" */
 
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Farthest first"]];
@@ -18,8 +18,8 @@ const MAX_ROWS = 60;
 /** @typedef {ReturnType<typeof measured>} Measured */
 const STRIP_TITLE = "Total distance in 50 steps, a dot for each seed";
 
-/** @param {{ known: Summary }} props */
-export function SweepTable({ known }) {
+/** @param {{ known: Summary, onSeed: OnSeed | null }} props */
+export function SweepTable({ known, onSeed }) {
   const [order, setOrder] = useState("grid");
   const [isWhole, setWhole] = useState(false);
   const greedy = greedyTotals(known.settings);
@@ -43,7 +43,8 @@ export function SweepTable({ known }) {
           <${Head} columns=${columns} hasBest=${hasBest} />
           <tbody role="rowgroup">
             ${(isWhole ? sorted : sorted.slice(0, MAX_ROWS)).map((row) => html`
-              <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} hasBest=${hasBest} />
+              <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} hasBest=${hasBest}
+                onSeed=${onSeed} />
             `)}
           </tbody>
         </table>
@@ -121,15 +122,15 @@ const nameOf = (setting, columns) =>
     .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, setting[field]))
     .join(", ");
 
-/** @param {{ row: Measured, columns: string[], high: number, hasBest: boolean }} props */
-function Row({ row, columns, high, hasBest }) {
+/** @param {{ row: Measured, columns: string[], high: number, hasBest: boolean, onSeed: OnSeed | null }} props */
+function Row({ row, columns, high, hasBest, onSeed }) {
   const { setting, typical, best } = row;
   return html`
     <tr role="row">
       <th role="rowheader" scope="row" class="num">${nameOf(setting, columns)}</th>
       <td role="cell" class="wide-cell" data-label=${STRIP_TITLE}>
         ${typical
-          ? html`<${Strip} row=${row} high=${high} />`
+          ? html`<${Strip} row=${row} high=${high} onSeed=${onSeed} />`
           : html`<span class="dim">waiting for its first seed</span>`}
       </td>
       <td role="cell" data-label="Interquartile mean" class="num"><${Typical} typical=${typical} /></td>
@@ -141,8 +142,8 @@ function Row({ row, columns, high, hasBest }) {
   `;
 }
 
-/** @param {{ row: Measured, high: number }} props */
-function Strip({ row: { setting, points, typical, line, best }, high }) {
+/** @param {{ row: Measured, high: number, onSeed: OnSeed | null }} props */
+function Strip({ row: { setting, points, typical, line, best }, high, onSeed }) {
   const known = best === null ? "" : `, best known ${shown(best)}`;
   const label = `${count(points.length, "seed")}, typically ${shown(typical?.iqm)}, greedy ${shown(line)}${known}`;
   const marks = [{ value: line, kind: "greedy" }, { value: best, kind: "best-known" }]
@@ -150,7 +151,7 @@ function Strip({ row: { setting, points, typical, line, best }, high }) {
   return html`
     <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
       color=${agentOf(setting.agent).color} axis=${shown}
-      onDot=${(/** @type {number} */ n) => showSeed(setting, setting.total?.points_m[n] ?? NaN)} />
+      onDot=${onSeed && ((/** @type {number} */ n) => onSeed(setting, setting.total?.points_m[n] ?? NaN))} />
   `;
 }
 

@@ -1,7 +1,6 @@
 // Table 1 in the paper's layout, with every seed of this run.
 import { useState } from "preact/hooks";
 import { bare, factorOf, gaitsOf, inUnit, placesOf, shown, unit } from "../distances.js";
-import { showSeed } from "../seeds.js";
 import { count, percentage, whole } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
@@ -10,6 +9,7 @@ import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html } from "../../../js/components/elements.js";
 import { BestKnownWords, PlaceSwitch, PlaceWords, StripKey, UnitSwitch } from "./report-tools.js";
 
+/** @import { OnSeed } from "./all-findings.js" */
 /** @import { Distances, Place, Setting, Summary } from "../../../js/types.js" */
 
 /** @type {[Distance, string, string][]} */
@@ -25,8 +25,8 @@ const DISTANCES = [
  */
 const REFERENCES = ["greedy", "two-step"];
 
-/** @param {{ known: Summary }} props */
-export function TableOne({ known }) {
+/** @param {{ known: Summary, onSeed: OnSeed | null }} props */
+export function TableOne({ known, onSeed }) {
   const places = placesOf(known.settings);
   const [chosen, setChosen] = useState(/** @type {string | null} */ (null));
   const place = places.find(({ key }) => key === chosen) ?? places[0];
@@ -46,9 +46,11 @@ export function TableOne({ known }) {
           Distance at time-out and total distance of each gait and agent, beside the paper’s
         </caption>
         <${Head} learners=${gaits[0].learners} />
-        ${gaits.map((one) => html`<${Gait} key=${one.gait} gait=${one} place=${place} high=${high} />`)}
+        ${gaits.map((one) => html`
+          <${Gait} key=${one.gait} gait=${one} place=${place} high=${high} onSeed=${onSeed} />
+        `)}
       </table>
-      <p class="dim table-note">${NOTES[unit.value]}</p>
+      <p class="dim table-note">${NOTES[unit.value]} ${PAPERS}</p>
       <${BestKnownWords} distances=${gaits.map(bestKnownOf)} />
     </section>
   `;
@@ -82,8 +84,8 @@ const factorsOf = (greedy, place) => ({
   paper: factorOf({ ...place, greedy_m: greedy?.published?.total_m ?? null }),
 });
 
-/** @param {{ gait: GaitSettings, place: Place, high: number }} props */
-function Gait({ gait: found, place, high }) {
+/** @param {{ gait: GaitSettings, place: Place, high: number, onSeed: OnSeed | null }} props */
+function Gait({ gait: found, place, high, onSeed }) {
   const { gait, learners, references } = found;
   const factors = factorsOf(references.greedy, place);
   const measure = { ...factors, high, best: inUnit(bestKnownOf(found), factors.ours) };
@@ -97,7 +99,7 @@ function Gait({ gait: found, place, high }) {
           <th role="rowheader" scope="row" class="distance" title=${words}>${title}</th>
           ${learners.map((one) => html`
             <${LearnerCell} key=${one.key} setting=${one} distance=${distance} greedy=${references.greedy}
-              measure=${measure} />
+              measure=${measure} onSeed=${onSeed} />
           `)}
           ${REFERENCES.map((agent) => html`
             <${ReferenceCell} key=${agent} title=${agentOf(agent).title} setting=${references[agent]}
@@ -144,18 +146,23 @@ const NOTES = {
   greedy: "Share of greedy’s total distance in the same place; the paper’s values as a share of its own greedy’s.",
 };
 
+const PAPERS = `The paper’s values are of one run. †: outside the central 95 % of the seeds here. Agents that look
+  ahead throw no dice: one walk is enough.`;
+
 // ---- cells: the seeds of this run as a strip, and the paper's value
 
 /**
  * `measure`: {ours, paper, high, best}: factors of the unit, the end of the axis, and the best known distance.
- * @param {{ setting: Setting, distance: Distance, greedy: Setting | null, measure: Measure }} props
+ * @param {{
+ *   setting: Setting, distance: Distance, greedy: Setting | null, measure: Measure, onSeed: OnSeed | null
+ * }} props
  */
-function LearnerCell({ setting, distance, greedy, measure }) {
+function LearnerCell({ setting, distance, greedy, measure, onSeed }) {
   const label = `${agentOf(setting.agent).title}, ${count(setting.steps, "step")}`;
   if (!setting[distance] || measure.ours === null) return html`<${EmptyCell} label=${label} />`;
   const shares = inUnits({ setting, distance, greedy, measure });
   const { typical, points, printed, marks } = shares;
-  const show = (/** @type {number} */ n) => showSeed(setting, setting.total?.points_m[n] ?? NaN);
+  const show = onSeed && ((/** @type {number} */ n) => onSeed(setting, setting.total?.points_m[n] ?? NaN));
   return html`
     <td role="cell" class="learner" data-label=${label}>
       <p class="cell-words num"><b>${shown(typical.iqm)}</b> <span class="dim">${intervalOf(typical)}</span></p>
@@ -214,10 +221,13 @@ function captionOf({ points, typical, line, best, printed }) {
   ].filter(Boolean).join("; ");
 }
 
+/** Whether a printed value is outside the central 95 % of the seeds. @param {number} quantile */
+const isOutside = (quantile) => quantile < 0.025 || quantile > 0.975;
+
 /** @param {{ value: number | null, quantile: number | null }} props */
 function Published({ value, quantile }) {
   if (value === null) return null;
-  const above = quantile === null ? "" : `, above ${percentage(quantile)} of seeds`;
+  const above = quantile === null ? "" : `, above ${percentage(quantile)} of seeds${isOutside(quantile) ? " †" : ""}`;
   return html`<p class="printed dim num">paper ${shown(value)}${above}</p>`;
 }
 

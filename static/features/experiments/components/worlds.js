@@ -9,7 +9,7 @@ import { count, percentage, whole } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
 import { agentTitle, gaitTitle, planningModelTitle } from "../../../js/titles.js";
-import { experimentKind } from "../feature.js";
+import { experimentKind } from "../kinds.js";
 import { Chart } from "../../../js/components/charts.js";
 import { html, Segments } from "../../../js/components/elements.js";
 import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
@@ -72,6 +72,7 @@ export function Worlds({ known }) {
       ${gaits.map((gait) => html`
         <${Table} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
       `)}
+      <${TableWords} known=${known} />
       <${BestKnownWords} distances=${here.map(({ best_known_m }) => best_known_m)} />
     </section>
     ${worlds.length > 1 && html`
@@ -122,7 +123,7 @@ function Gait({ gait, entries, known }) {
       ${curves.length > 0 && html`
         <${Chart} name=${gaitTitle(gait)} label=${label} lines=${curves} marks=${marks}
           xs=${[...new Set(curves.flatMap(({ xs }) => xs))].sort((a, b) => a - b)}
-          x=${stepsAxis(curves, stepsOf(known))} y=${distanceAxis([{ lines: curves, marks }])} />
+          x=${stepsAxis(curves, known.config, stepsOf(known))} y=${distanceAxis([{ lines: curves, marks }])} />
       `}
     </figure>
   `;
@@ -204,6 +205,25 @@ function Overview({ entries, worlds, known }) {
     </section>
   `;
 }
+
+// ---- what the words of the tables mean
+
+/** @param {{ known: Summary }} props */
+const TableWords = ({ known }) => html`
+  <p class="dim table-note">
+    Metres in 50 steps from rest. Mean: the area under the curve, divided by its steps. Steps to a share of a reference:
+    ${" "}${UNTIL.toLowerCase()}.
+    ${isRecovery(known) && html`
+      ${" "}Who looks ahead walks in that world from the start. Earned: the sum of the rewards of those steps of the
+      practice itself, which explores; a reward is the way along
+      ${known.config.reward === "track" ? " the track" : " the robot’s own heading"}.
+    `}
+    ${known.config.tolerance ? html`
+      ${" "}Each seed draws the robot that everyone walks with: lengths, masses, servo gains, friction and mounting
+      angles within ${percentage(known.config.tolerance)} of its design.
+    ` : ""}
+  </p>
+`;
 
 // ---- one table per gait, the farthest first
 

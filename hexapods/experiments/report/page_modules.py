@@ -1,0 +1,83 @@
+"""The page's scripts and styles, to be put into one file."""
+
+import base64
+import json
+import posixpath
+import re
+from functools import lru_cache
+from html.parser import HTMLParser
+
+from hexapods import assets
+
+_IMPORT = re.compile(
+    r"""(?P<before>(?:^|;)import\b[^"'`;()]*|(?:^|;)export\b[^"'`;()=]*\bfrom\s*|(?<=\s)import\()"""
+    r'"(?P<name>[^"\n]+)"',
+    re.MULTILINE,
+)
+"""The module that a statement imports or exports from, or that code imports when it needs it."""
+
+
+@lru_cache(maxsize=1)
+def import_map(entry: str) -> str:
+    """Return an import map that has a module and all that it imports as `data:` addresses.
+
+    Modules keep their paths below `static` as names, without a dot or slash at the beginning, so
+    that they are no addresses.
+
+    Args:
+        entry: path of the module below `static`.
+    """
+    sources: dict[str, str] = {}
+    waiting = [entry]
+    packages = _packages()
+    while waiting:
+        path = waiting.pop()
+        if path in sources:
+            continue
+        text = (assets.static_dir() / path).read_text("utf-8")
+
+        def renamed(match: re.Match[str], path: str = path) -> str:
+            imported = _path_of(match["name"], path, packages)
+            waiting.append(imported)
+            return f'{match["before"]}"{imported}"'
+
+        sources[path] = _IMPORT.sub(renamed, text)
+    imports = {
+        path: f"data:text/javascript;base64,{base64.b64encode(text.encode()).decode()}"
+        for path, text in sorted(sources.items())
+    }
+    return json.dumps({"imports": imports})
+
+
+def styles(*names: str) -> str:
+    """Return style sheets below `static`, one after the other."""
+    return "\n".join((assets.static_dir() / name).read_text("utf-8") for name in names)
+
+
+def _path_of(name: str, importer: str, packages: dict[str, str]) -> str:
+    if name in packages:
+        return packages[name]
+    return posixpath.normpath(posixpath.join(posixpath.dirname(importer), name))
+
+
+def _packages() -> dict[str, str]:
+    """Return the paths of packages below `static`, from the page's own import map."""
+    parser = _ImportMapParser()
+    parser.feed((assets.static_dir() / "index.html").read_text("utf-8"))
+    imports = json.loads(parser.text)["imports"]
+    return {name: address.removeprefix("./static/") for name, address in imports.items()}
+
+
+class _ImportMapParser(HTMLParser):
+    """Finds the text of the import map of a page."""
+
+    text = ""
+    _is_inside = False
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self._is_inside = tag == "script" and ("type", "importmap") in attrs
+
+    def handle_data(self, data: str) -> None:
+        if self._is_inside:
+            self.text += data
+            self._is_inside = False

@@ -1,0 +1,138 @@
+// The findings of a summary: figures and tables, claims, conclusions, trials left out and method. It asks the server
+// for nothing, so that the report that opens without one has the same.
+import { count, duration, whole } from "../../../js/format.js";
+import { simulatorTitle } from "../../../js/titles.js";
+import { html } from "../../../js/components/elements.js";
+import { FigureFour } from "./figure-four.js";
+import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
+import { SweepTable } from "./sweep-table.js";
+import { TableOne } from "./table-one.js";
+import { Worlds } from "./worlds.js";
+import { experimentKind } from "../kinds.js";
+
+/** @import { Setting, Summary } from "../../../js/types.js" */
+/** @import { ComponentChildren } from "preact" */
+
+/** What happens at a click on the dot of a seed. @typedef {(setting: Setting, distance_m: number) => unknown} OnSeed */
+
+/** The table or chart of an experiment, by what it measures. @param {Summary} known */
+function figureOf({ experiment }) {
+  const kind = experimentKind(experiment);
+  if (!kind) return null;
+  if (kind.measure === "distance") return kind.takes_settings ? SweepTable : TableOne;
+  return kind.measure === "blocks" ? FigureFour : Worlds;
+}
+
+/**
+ * `children` follow the figure; `more` are further rows of the method.
+ * @param {{
+ *   known: Summary, onSeed?: OnSeed | null, more?: [string, ComponentChildren][], children?: ComponentChildren
+ * }} props
+ */
+export function Findings({ known, onSeed = null, more = [], children }) {
+  const Figure = figureOf(known);
+  return html`
+    <${LeftOut} trials=${known.trials} />
+    ${Figure && html`<${Figure} known=${known} onSeed=${onSeed} />`}
+    ${children}
+    ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
+    <${Versus} known=${known} />
+    <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
+    <${Narrative} parts=${known.story ?? []} />
+    <${FairClocks} timed=${known.timed ?? []} />
+    <${Method} known=${known} more=${more} />
+  `;
+}
+
+// ---- trials without a distance, with the reasons
+
+/** @param {{ trials: Summary["trials"] }} props */
+function LeftOut({ trials }) {
+  const aside = trials.set_aside ?? [];
+  const failures = trials.failures ?? [];
+  // Summaries of earlier versions count those that were set aside apart.
+  const failed = Math.max(trials.failed, failures.length + aside.length);
+  if (!failed) return null;
+  const counts = [
+    `${whole(failed)} of ${count(trials.total, "trial")} failed`,
+    aside.length && `${aside.length} of them set aside`,
+  ];
+  return html`
+    <section class="panel left-out" aria-labelledby="left-out">
+      <h2 id="left-out">Left out: ${counts.filter(Boolean).join(", ")}</h2>
+      <p class="dim">
+        A trial is set aside when it has killed its worker three times, or cannot be run. All others are in the figures.
+      </p>
+      <details class="more">
+        <summary>Which, and why</summary>
+        <ul>
+          ${failures.map(({ label, key, reason }) => html`
+            <li>${label ?? key} failed: <span class="dim">${reason}</span></li>
+          `)}
+          ${aside.map(({ label, key, reason }) => html`
+            <li>${label ?? key} was set aside: <span class="dim">${reason}</span></li>
+          `)}
+        </ul>
+      </details>
+    </section>
+  `;
+}
+
+// ---- what is needed to repeat it: seeds, versions, machine and time
+
+/** @param {(string | 0 | false | null | undefined)[]} parts */
+const joined = (parts) => parts.filter(Boolean).join(", ");
+
+/** @param {Summary} known */
+const simulatorOf = ({ config, versions = {} }) => {
+  const version = config.simulator === "mujoco" ? versions.mujoco : null;
+  return [simulatorTitle(config.simulator), version].filter(Boolean).join(" ");
+};
+
+/** @param {Summary} known */
+const versionsOf = ({ versions = {} }) =>
+  joined(Object.entries(versions).filter(([name]) => name !== "mujoco").map(([name, version]) => `${name} ${version}`));
+
+/** @param {Summary} known */
+const machineOf = ({ machine = {} }) => joined([machine.platform, machine.cores && count(machine.cores, "core")]);
+
+/** @param {{ cost: Summary["cost"] }} one */
+const timeOf = ({ cost }) =>
+  cost && joined([
+    cost.wall_s && duration(cost.wall_s), cost.compute_s && `${duration(cost.compute_s)} of computing`,
+    cost.trials_per_s && `${cost.trials_per_s.toPrecision(3)} trials a second`,
+    cost.workers && count(cost.workers, "worker"),
+  ]);
+
+/** @param {Summary} known */
+const trialsOf = ({ trials: { done, total, failed, set_aside = [] } }) =>
+  `${whole(done)} of ${whole(total)} done, ${whole(failed)} failed, ${whole(set_aside.length)} set aside`;
+
+const STATISTICS = `Interquartile means with stratified bootstrap percentile intervals (2,000 resamples; the gaits are
+  the strata where they are taken together); shares with Wilson intervals; no correction for how many comparisons there
+  are.`;
+
+/** @param {{ known: Summary, more: [string, ComponentChildren][] }} props */
+function Method({ known, more }) {
+  const { seeds, seed } = known.config;
+  const rows = [
+    ["Seeds", `${count(seeds, "seed")}, spawned from ${seed}`],
+    ["Trials", trialsOf(known)],
+    ["Simulator", simulatorOf(known)],
+    ["Versions", versionsOf(known)],
+    ["Machine", machineOf(known)],
+    ["Time", timeOf(known)],
+    ["Statistics", STATISTICS],
+    ...more,
+  ];
+  return html`
+    <section class="panel making" aria-labelledby="making">
+      <h2 id="making">Method</h2>
+      <dl>
+        ${rows.filter(([, value]) => value !== undefined && value !== null).map(([name, value]) => html`
+          <div><dt>${name}</dt><dd>${value}</dd></div>
+        `)}
+      </dl>
+    </section>
+  `;
+}

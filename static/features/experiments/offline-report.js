@@ -1,0 +1,45 @@
+// The report of an experiment as one file: what the page shows of its summary, from the data that the file has. It is
+// complete without a server, and asks for nothing.
+import { render } from "preact";
+import { html } from "../../js/components/elements.js";
+import { page } from "../../js/page-state.js";
+import { options } from "../../js/store.js";
+import { Findings } from "./components/all-findings.js";
+import { configInWords, findingIn } from "./words.js";
+
+/** @import { Run, Summary } from "../../js/types.js" */
+/** @import { Signal } from "@preact/signals" */
+
+/** What else the file tells. @typedef {{ title: string, command: string }} Report */
+
+/** The data of a block. @param {string} id */
+const dataOf = (id) => JSON.parse(document.getElementById(id)?.textContent ?? "null");
+
+const FILES = "summary.json has all numbers of this page, trials.csv every trial.";
+
+/** @param {{ summary: Summary, report: Report }} props */
+const OfflineReport = ({ summary, report }) => html`
+  <header>
+    <p class="dim">Racing Hexapods: Q-learning against uninformed search</p>
+    <h1>${report.title}</h1>
+  </header>
+  <main class="report">
+    <div class="report-body">
+      <div class="gist">
+        ${findingIn(summary) && html`<p class="finding">${findingIn(summary)}</p>`}
+        <p class="dim">${configInWords(/** @type {Run["config"]} */ (/** @type {unknown} */ (summary.config)))}</p>
+      </div>
+      <${Findings} known=${summary} more=${[["Command", html`<code>${report.command}</code>`], ["Files", FILES]]} />
+    </div>
+  </main>
+`;
+
+/** Print what is folded as well. */
+const unfold = () =>
+  document.querySelectorAll("details:not(.menu)").forEach((details) => details.setAttribute("open", ""));
+
+options.value = dataOf("options");
+// Outside the view of the race charts have all their tools.
+/** @type {Signal<string>} */ (page.view).value = "experiments";
+render(html`<${OfflineReport} summary=${dataOf("summary")} report=${dataOf("report")} />`, document.body);
+addEventListener("beforeprint", unfold);
