@@ -78,10 +78,11 @@ from app.viewer.replay_frames import ReplayFrames
 from app.viewer.session import websocket_options
 from app.viewer.shared_stage import SharedStage
 from app.viewer.viewer_page import viewer_routes
-from hexapods import __version__, assets
+from hexapods import assets
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.processes import return_freed_memory, start_fork_server
 from hexapods.runs.config import usable_agents
+from hexapods.version import __version__
 
 _logger = logging.getLogger(__name__)
 GRACE_S = 3

@@ -16,7 +16,7 @@ Modules beside the packages, each of which has a map in its docstring:
   what a person may write for an agent, a robot or a world. `interruption`: Ctrl-C.
 - `assembly`: from a config to a simulator and agents.
 - `assets`: where models, page and documents are; `files`: atomic writes and locks; `machine`: cores
-  and memory; `extras`: optional packages.
+  and memory; `extras`: optional packages; `version`: of the product.
 - `processes`: start, set-up, watch and end of processes; `clean_start`: they do not import the
   program that starts them; `fork_server_end`: no folder is left; `worker_pool`: their executor.
 """
@@ -25,10 +25,10 @@ import importlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from hexapods.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from hexapods.public import *  # noqa: F403
-
-__version__ = "0.2.0"
 
 if not TYPE_CHECKING:  # else every name would pass for one of its names
 

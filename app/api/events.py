@@ -23,7 +23,7 @@ from app.limits.client_slots import NoFreeSlot, Refusal
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
 from app.viewer.shared_stage import SharedStage
-from hexapods import __version__
+from hexapods.version import __version__
 
 NEWEST_RUNS = 50
 RETRY_MS = 1000

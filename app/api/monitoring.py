@@ -27,8 +27,8 @@ from app.api.problems import problem
 from app.api.work import PROBE
 from app.events.damage import damage_counts
 from app.storage.run import STATES
-from hexapods import __version__
 from hexapods.domain.errors import HexapodError
+from hexapods.version import __version__
 
 router = api_router(tags=["health"])
 

@@ -24,7 +24,6 @@ from app.api.robot_options import built_in_options, gait_options, stored_options
 from app.feature import Feature
 from app.storage.database.robots import RobotStore
 from app.storage.stored_robot import StoredRobot
-from hexapods import __version__
 from hexapods.agents.registry import learns
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.gait import NAMED_GAITS
@@ -48,6 +47,7 @@ from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.config import RACE_STEPS, training_config
 from hexapods.runs.race_config import MAX_LANES
 from hexapods.shows.scene_spec import PAPERS_LANES
+from hexapods.version import __version__
 
 A = TypeVar("A", bound=Answer)
 _DEFAULTS = "defaults."

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
-from hexapods import __version__
+from hexapods.version import __version__
 
 _OUTPUT_CLOSED = 128 + 13
 """Exit code that a shell reports of a tool that SIGPIPE ended."""

@@ -12,8 +12,8 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
 from pathlib import Path
 
-from hexapods import __version__
 from hexapods.extras import MODULES, install_command, is_installed
+from hexapods.version import __version__
 
 _PYTHON = (3, 11)
 _PHYSICS_TIMEOUT_S = 60.0

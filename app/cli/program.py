@@ -11,8 +11,8 @@ from app.cli.commands import command_modules
 from app.cli.exit_codes import INTERRUPTED
 from app.cli.options import CommandParser
 from app.cli.robot_names import stored_robots_known
-from hexapods import __version__
 from hexapods.domain.errors import HexapodError
+from hexapods.version import __version__
 
 
 def run(arguments: Sequence[str]) -> int:

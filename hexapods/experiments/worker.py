@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any, NamedTuple, Protocol
 
-from hexapods import __version__
 from hexapods.domain.errors import HexapodError
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.trial import TrialResult, run_trial
+from hexapods.version import __version__
 
 
 class ClusterLost(HexapodError):

@@ -4,9 +4,9 @@ import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from hexapods import __version__
 from hexapods.exports.export_format import FileType
 from hexapods.exports.servo_walk import FRAME_S, ServoWalk
+from hexapods.version import __version__
 
 _FRAME_MS = round(1000 * FRAME_S)
 

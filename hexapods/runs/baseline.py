@@ -9,12 +9,14 @@ from functools import cache
 from importlib.metadata import version
 from threading import Lock
 
+import numpy as np
 from cachetools import LRUCache
 
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.records import to_json
 from hexapods.domain.world import World
 from hexapods.runs.config import TrainingConfig, WalkingProblem
+from hexapods.version import __version__
 
 _PROBLEM = [field.name for field in fields(WalkingProblem) if field.name != "world"]
 _MAX_BASELINES = 256
@@ -42,8 +44,12 @@ def baseline_id(config: TrainingConfig, conditions: World) -> str:
 
 @cache
 def _software() -> list[str]:
-    names = ("racing-hexapods", "mujoco-core", "numpy")
-    return [*(f"{name} {version(name)}" for name in names), platform.machine()]
+    return [
+        f"racing-hexapods {__version__}",
+        f"mujoco {version('mujoco-core')}",
+        f"numpy {np.__version__}",
+        platform.machine(),
+    ]
 
 
 class Baselines:

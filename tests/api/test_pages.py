@@ -169,7 +169,8 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     opened = {path for script in scripts for path in imported_later(script, folder)}
     opened |= {*opened_by_features(folder)}
     opened |= {f"static/features/{n}/feature.js" for n in coded if "codeFor" in coded[n]}
-    opened.add("static/js/offline/player.js")  # of files that play a replay offline
+    # Of files that are opened without a server: a replay, and the report of an experiment.
+    opened |= {"static/js/offline/player.js", "static/features/experiments/offline-report.js"}
     # Of pages of features.
     pages = ("features/classroom/room/main.js", "features/tournaments/main.js")
     opened |= {f"static/{path}" for path in pages if (folder / path).exists()}

@@ -14,7 +14,7 @@ from starlette.routing import BaseRoute
 from app.api.policy import WATCH, GuardedPage, policy
 from app.api.problems import problem
 from app.api.templates import render
-from hexapods import __version__
+from hexapods.version import __version__
 
 if TYPE_CHECKING:
     from markdown_it.token import Token
