@@ -18,6 +18,7 @@ from hexapods.domain.grid import FootGrid
 from hexapods.domain.model_robot import ModelRobot, model_robot
 from hexapods.domain.records import check_kept
 from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
+from hexapods.domain.robot_library import RobotLibrary
 from hexapods.domain.text import MAX_NAME, visible
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
@@ -143,7 +144,9 @@ def check_savable(config: C) -> C:
     Raises:
         InvalidInput: if it cannot be saved.
     """
-    return check_kept(config) if type(config.robot) in (Robot, ModelRobot) else config
+    return (
+        check_kept(config, RobotLibrary()) if type(config.robot) in (Robot, ModelRobot) else config
+    )
 
 
 def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:

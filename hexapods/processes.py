@@ -25,7 +25,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 from hexapods.clean_start import clean_start
-from hexapods.domain import robot_documents
+from hexapods.domain.robot_library import LIBRARY, RobotLibrary
 
 STALLED_S = 8.0
 """A process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
@@ -186,7 +186,7 @@ class Child:
         """
         context = process_context()
         self.pipe, other_end = context.Pipe()
-        arguments = self._target, self._set_up, robot_documents.known(), other_end
+        arguments = self._target, self._set_up, LIBRARY, other_end
         self._process = context.Process(target=_run, args=arguments, name=self._set_up.name)
         try:
             with clean_start(imports_main=self._set_up.imports_main):
@@ -203,11 +203,11 @@ class Child:
 def _run(
     target: Callable[[Connection], None],
     set_up: SetUp,
-    robots: robot_documents.Known,
+    robots: RobotLibrary,
     pipe: Connection,
 ) -> None:
     set_up.apply()
-    robot_documents.learn(robots)
+    LIBRARY.add_all(robots)
     target(pipe)
 
 

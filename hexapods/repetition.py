@@ -30,6 +30,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import read_gait
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import check_kept
+from hexapods.domain.robot_library import RobotLibrary
 from hexapods.domain.simulator import RewardKind
 from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
@@ -220,7 +221,7 @@ def experiment(
 
     check_callable("on_trial", on_trial)
     check_main_module()
-    config = check_kept(experiment_config(name, _read(fields_and_settings)))
+    config = check_kept(experiment_config(name, _read(fields_and_settings)), RobotLibrary())
     spec = ClusterSpec(workers=workers)
     kept: AbstractContextManager[Progress] = (
         nullcontext(Progress(config))

@@ -6,9 +6,9 @@ from contextvars import ContextVar
 
 from app.cli.stored_runs import open_for_reading
 from app.settings import ROBOTS_FOLDER, read_settings
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.robot import PRESETS, Robot
+from hexapods.domain.robot_library import LIBRARY
 
 _data: ContextVar[str | None] = ContextVar("data", default=None)
 """The data folder that an option of the command says."""
@@ -26,13 +26,13 @@ def stored_robots_known(data: str | None) -> Iterator[None]:
     except InvalidInput:  # a command that needs the settings says what is wrong with them
         yield
         return
-    robot_documents.use_folder(folder)
+    LIBRARY.add_folder(folder)
     reset = _data.set(data)
     try:
         yield
     finally:
         _data.reset(reset)
-        robot_documents.leave_folder(folder)
+        LIBRARY.remove_folder(folder)
 
 
 def stored_robot(text: str) -> Robot:
@@ -50,5 +50,5 @@ def stored_robot(text: str) -> Robot:
         raise InvalidInput(f"{unknown}. Stored robots cannot be read: {error}") from error
     if found is None:
         raise UnknownName("robot", text, [*PRESETS, *names])
-    found.tell()
+    LIBRARY.describe(found.id, found.about)
     return found.robot

@@ -12,6 +12,7 @@ from hexapods.agents.tabular import TabularAgent
 from hexapods.domain.disturbance_documents import disturbance_from
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
 from hexapods.domain.records import from_json
+from hexapods.domain.robot_library import LIBRARY, RobotLibrary
 from hexapods.domain.settings import complete
 from hexapods.domain.world import world
 from hexapods.runs import seeding, tables
@@ -38,7 +39,7 @@ class TableMeta(msgspec.Struct):
 
 
 def checked_table(
-    data: bytes, label: str, agents: Collection[str]
+    data: bytes, label: str, agents: Collection[str], library: RobotLibrary = LIBRARY
 ) -> tuple[Checkpoint, TableMeta, TrainingConfig]:
     """Parse and validate a table file; return checkpoint, metadata and config of its training.
 
@@ -46,6 +47,7 @@ def checked_table(
         data: content of the file.
         label: name of the file for error messages.
         agents: names of the registered agents; no other agent is imported.
+        library: where the robot of its training is found by its id.
 
     Raises:
         UnknownName: if its agent is not registered.
@@ -53,7 +55,7 @@ def checked_table(
         TableMismatch: if its metadata and its config are of different walking problems.
     """
     checkpoint = tables.from_bytes(data, label)
-    config = _training(checkpoint.meta.get("config"), label)
+    config = _training(checkpoint.meta.get("config"), label, library)
     if config.agent not in agents:
         raise UnknownName("agent", config.agent, agents)
     try:
@@ -114,13 +116,13 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         valid[name].check(value)
 
 
-def _training(config_data: Any, label: str) -> TrainingConfig:
+def _training(config_data: Any, label: str, library: RobotLibrary) -> TrainingConfig:
     if not isinstance(config_data, Mapping):
         raise DamagedFile(f"{label} does not say what was trained")
     try:
         if "lanes" in config_data:
             raise DamagedFile(f"{label} is of a race; give that of a training")
-        return from_json(TrainingConfig, config_data)
+        return from_json(TrainingConfig, config_data, context=library)
     except DamagedFile:
         raise
     except HexapodError as error:

@@ -5,12 +5,11 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
-from hexapods.domain import robot_documents
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.gait import AnyGait, gait_as_json
 from hexapods.domain.records import Record
 from hexapods.domain.robot import Robot, robot
-from hexapods.domain.robot_documents import About
+from hexapods.domain.robot_library import About
 from hexapods.domain.text import MAX_NAME
 
 MAX_ROBOTS = 500
@@ -52,10 +51,10 @@ class StoredRobot(Record):
         """
         return robot({"id": self.id, "name": self.name})
 
-    def tell(self) -> None:
-        """Let this process know its name and its gait."""
-        gait = None if self.gait is None else gait_as_json(self.gait)
-        robot_documents.tell(self.id, About(self.name, gait))
+    @property
+    def about(self) -> About:
+        """Its name and its gait, for a library."""
+        return About(self.name, None if self.gait is None else gait_as_json(self.gait))
 
 
 def distinct_name(name: str, taken: Collection[str]) -> str:

@@ -8,7 +8,6 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
 from hexapods.domain.robot_documents import RobotDocument
 from hexapods.domain.short_repr import short_repr
@@ -150,12 +149,6 @@ class Robot:
 
     document: RobotDocument | None = field(default=None, compare=False, repr=False, kw_only=True)
     """The document of the stored robot with this id; None for a preset."""
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Restore a pickled robot, and let this process find its document by its id."""
-        if (document := state["document"]) is not None:
-            robot_documents.add(document.data)
-        vars(self).update(state)
 
     def __post_init__(self) -> None:
         _check_name(self.name)

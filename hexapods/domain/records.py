@@ -99,12 +99,15 @@ class JsonForm:
         write: converts to plain types.
         given: JSON schema of what may be given, or a function that returns it.
         sent: JSON schema of what is written; None if it is `given`.
+        takes_context: whether `read` and `write` take the context of `from_json` and `to_json` as
+            their second argument; None where there is none.
     """
 
-    read: Callable[[Any], Any]
-    write: Callable[[Any], Any]
+    read: Callable[..., Any]
+    write: Callable[..., Any]
     given: Schema | Callable[[], Schema]
     sent: Schema | None = None
+    takes_context: bool = False
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         def describe(_: Any, schema_of: Any) -> Schema:
@@ -112,13 +115,14 @@ class JsonForm:
                 return dict(self.sent)
             return dict(self.given() if callable(self.given) else self.given)
 
-        return plain_form(self.read, self.write, describe)
+        return plain_form(self.read, self.write, describe, takes_context=self.takes_context)
 
 
 def plain_form(
-    read: Callable[[Any], Any],
-    write: Callable[[Any], Any],
+    read: Callable[..., Any],
+    write: Callable[..., Any],
     describe: Callable[[Any, Any], Schema],
+    takes_context: bool = False,
 ) -> Any:
     """Return Pydantic's schema of a type that is read and written by functions.
 
@@ -126,20 +130,34 @@ def plain_form(
         read: converts what was given.
         write: converts to plain types.
         describe: returns the JSON schema, as Pydantic's `pydantic_js_functions` do.
+        takes_context: whether `read` and `write` take Pydantic's context as second argument.
     """
     from pydantic_core import core_schema  # noqa: PLC0415 - as in `_adapter`
 
-    return core_schema.no_info_plain_validator_function(
-        read,
-        serialization=core_schema.plain_serializer_function_ser_schema(write),
-        metadata={"pydantic_js_functions": [describe]},
+    about = {"pydantic_js_functions": [describe]}
+    if not takes_context:
+        writer = core_schema.plain_serializer_function_ser_schema(write)
+        return core_schema.no_info_plain_validator_function(
+            read, serialization=writer, metadata=about
+        )
+    return core_schema.with_info_plain_validator_function(
+        lambda value, info: read(value, info.context),
+        serialization=core_schema.plain_serializer_function_ser_schema(
+            lambda value, info: write(value, info.context), info_arg=True
+        ),
+        metadata=about,
     )
 
 
-def to_json(record: Any) -> dict[str, Any]:
-    """Convert a record to plain types, as in requests, answers, the database and files."""
+def to_json(record: Any, context: Any = None) -> dict[str, Any]:
+    """Convert a record to plain types, as in requests, answers, the database and files.
+
+    Args:
+        record: the record.
+        context: for the forms of its fields that take one; see `JsonForm`.
+    """
     adapter = _adapter(type(record))  # type: ignore[arg-type]  # mypy: no hash
-    plain: dict[str, Any] = adapter.dump_python(record, mode="json", by_alias=True)
+    plain: dict[str, Any] = adapter.dump_python(record, mode="json", by_alias=True, context=context)
     return plain
 
 
@@ -149,7 +167,7 @@ def from_json(kind: type[T], data: Any, **how: Any) -> T:
     Args:
         kind: class of the record.
         data: plain types, or bytes of JSON.
-        how: arguments for Pydantic, such as `strict=True`.
+        how: arguments for Pydantic, such as `strict=True`, or the `context` of fields' forms.
 
     Raises:
         InvalidInput: if a value is invalid.
@@ -173,14 +191,18 @@ def from_json(kind: type[T], data: Any, **how: Any) -> T:
     return record
 
 
-def check_kept(record: T) -> T:
+def check_kept(record: T, context: Any = None) -> T:
     """Return a record that can be saved and read again: to be called before what it decides.
+
+    Args:
+        record: the record.
+        context: for `to_json` and then for `from_json`.
 
     Raises:
         InvalidInput: if it cannot, so that nothing is computed that could not be described.
     """
     try:
-        read = from_json(type(record), to_json(record))
+        read = from_json(type(record), to_json(record, context), context=context)
     except InvalidInput:
         raise
     except Exception as error:  # of functions that convert values of agents and robots

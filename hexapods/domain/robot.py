@@ -14,6 +14,7 @@ from hexapods.domain.model_documents import model_content, read_model_content
 from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import JsonForm, Schema
 from hexapods.domain.robot_documents import RobotDocument
+from hexapods.domain.robot_library import LIBRARY, RobotLibrary
 from hexapods.domain.text import MAX_NAME
 
 __all__ = ["MAX_LEGS", "MIN_LEGS", "PRESETS", "LegMount", "Robot", "ring"]
@@ -78,7 +79,7 @@ PLACED_RANGES = dict.fromkeys(_PLACE, _COORDINATE) | LEG_RANGES
 """Of a leg in a request: its place in either form, and what is its own."""
 
 
-def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
+def robot(value: str | Mapping[str, Any] | Robot, library: RobotLibrary = LIBRARY) -> Robot:
     """Build a robot from user input: a preset's name, a stored robot's id, or overrides of either.
 
     A mapping may have `preset` (default `stiff`), or the `id` of a stored robot and its `name`,
@@ -86,17 +87,22 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     as `n_legs` (a regular ring, with `mount_radius_m`) or as `legs`, a list of mappings with the
     fields of `LegMount`; `x_m` and `y_m` may stand for azimuth and radius.
 
+    Args:
+        value: the input.
+        library: where a robot is found by its id.
+
     Raises:
         UnknownName: for an unknown preset or field.
-        InvalidInput: for a value out of range, or if no robot of this id is stored here.
+        InvalidInput: for a value out of range, or if the library has no robot of this id.
     """
     if isinstance(value, Robot):
         return value
     if not isinstance(value, Mapping):
-        return _by_id(str(value), None) if robot_documents.is_id(value) else _preset(value)
+        is_id = robot_documents.is_id(value)
+        return _by_id(str(value), None, library) if is_id else _preset(value)
     values = dict(value)
     if "id" in values:
-        return _changed(_stored(values), values)
+        return _changed(_stored(values, library), values)
     return _changed(_preset(values.pop("preset", "stiff")), values)
 
 
@@ -193,16 +199,16 @@ def document_of(value: Robot) -> bytes:
     return robot_documents.encode({"robot": {**numbers, "legs": legs}})
 
 
-def read_document(data: bytes, name: str | None = None) -> Robot:
-    """Return the robot of a document, and keep the document in this process.
+def read_document(data: bytes, name: str | None = None, library: RobotLibrary = LIBRARY) -> Robot:
+    """Return the robot of a document, and add the document to a library.
 
     Raises:
         DamagedFile: if it is none.
         InvalidInput: if its robot is not valid.
     """
     parsed = parse_document(data)
-    robot_documents.add(data)
-    return _named(parsed, name)
+    library.add(data)
+    return _named(parsed, name, library)
 
 
 @lru_cache(maxsize=32)
@@ -220,7 +226,7 @@ def parse_document(data: bytes) -> Robot:
     return replace(parsed, id=robot_documents.id_of(data), document=RobotDocument(data))
 
 
-def _stored(values: dict[str, Any]) -> Robot:
+def _stored(values: dict[str, Any], library: RobotLibrary) -> Robot:
     """Pop `id` and `name` from an input, and return the stored robot."""
     robot_id, name = values.pop("id"), values.pop("name", None)
     if name is not None and not (isinstance(name, str) and len(name) <= MAX_NAME):
@@ -231,22 +237,23 @@ def _stored(values: dict[str, Any]) -> Robot:
         raise InvalidInput(
             f"robot.id must have {robot_documents.ID_DIGITS} hexadecimal digits, not {robot_id!r}"
         )
-    return _by_id(robot_id, name)
+    return _by_id(robot_id, name, library)
 
 
-def _by_id(robot_id: str, name: str | None) -> Robot:
-    return _named(parse_document(robot_documents.find(robot_id, name)), name)
+def _by_id(robot_id: str, name: str | None, library: RobotLibrary) -> Robot:
+    return _named(parse_document(library.find(robot_id, name)), name, library)
 
 
-def _named(parsed: Robot, name: str | None) -> Robot:
+def _named(parsed: Robot, name: str | None, library: RobotLibrary) -> Robot:
     """Return the robot of a document with the name and the gait that are stored beside it.
 
     Args:
         parsed: the robot.
         name: its name where none is stored.
+        library: has what is stored beside it.
     """
     robot_id, document = str(parsed.id), parsed.document
-    about = robot_documents.about(robot_id)
+    about = library.about(robot_id)
     if about is None or document is None:
         return replace(parsed, name=name or f"robot {robot_id[:6]}")
     return replace(parsed, name=about.name, document=document._replace(gait=about.gait))
@@ -431,8 +438,24 @@ _SENT: Schema = {
     },
     "additionalProperties": {"type": "number"},
 }
+
+
+def _read(value: Any, library: RobotLibrary | None) -> Robot:
+    return robot(value, LIBRARY if library is None else library)
+
+
+def _write(value: Robot, library: RobotLibrary | None) -> dict[str, Any]:
+    if library is not None and value.document is not None:
+        library.add(value.document.data)
+    return as_mapping(value)
+
+
 AnyRobot = Annotated[
     Robot,
-    JsonForm(robot, as_mapping, {"anyOf": [_PRESET, _ID, _GIVEN, _STORED]}, _SENT),
+    JsonForm(_read, _write, {"anyOf": [_PRESET, _ID, _GIVEN, _STORED]}, _SENT, takes_context=True),
 ]
-"""A robot: in requests a preset's name or a stored robot's id, too."""
+"""A robot: in requests a preset's name or a stored robot's id, too.
+
+The context of `from_json` may be the library in which it is found by its id, and that of `to_json`
+a library, to which its document is added.
+"""

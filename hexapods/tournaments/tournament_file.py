@@ -20,6 +20,7 @@ from hexapods.domain.errors import (
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import Record, from_json, to_json
 from hexapods.domain.robot import parse_document
+from hexapods.domain.robot_library import LIBRARY, RobotLibrary
 from hexapods.domain.text import check_name, visible
 from hexapods.domain.world import parse_world
 from hexapods.experiments.worker import versions
@@ -225,8 +226,8 @@ def read_file(data: bytes, name: str) -> TournamentFile:
             what its name says.
     """
     try:
-        with robot_documents.lent(_robots(_checked(data, name))):
-            tournament = from_json(TournamentFile, data, strict=True)
+        library = RobotLibrary(LIBRARY, _robots(_checked(data, name)))
+        tournament = from_json(TournamentFile, data, strict=True, context=library)
         _check_tables(tournament)
     except OtherFormat:
         raise

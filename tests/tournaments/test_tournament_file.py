@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from app.features.tournaments.tournaments import MAX_ROBOTS_BYTES, MAX_TABLES_BYTES
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput, OtherFormat
 from hexapods.domain.robot import PRESETS, document_of, read_document, robot
+from hexapods.domain.robot_library import LIBRARY
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.rules import MAX_DRAWS, MAX_ENTRIES
 from hexapods.tournaments.tournament_file import (
@@ -49,15 +49,15 @@ def test_it_has_the_documents_of_stored_robots() -> None:
     rules = rules_of(robot=stored, gait="tetrapod")
     made = tournament_file("Crabs", rules, SECRET, [])
     written = write_file(made)
-    robot_documents.forget([stored.id])
+    LIBRARY.forget([stored.id])
     with pytest.raises(InvalidInput, match="no stored robot"):
-        robot_documents.find(stored.id)
+        LIBRARY.find(stored.id)
     again = read_file(written, "it")
     assert again.rules.robot == stored
     assert again.rules.robot.name == "Pinch"
     assert write_file(again) == written
     with pytest.raises(InvalidInput, match="no stored robot"):
-        robot_documents.find(stored.id)
+        LIBRARY.find(stored.id)
 
 
 def _changed(tournament: TournamentFile, change: Callable[[Any], object]) -> bytes:

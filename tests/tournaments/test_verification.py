@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot import PRESETS, document_of, read_document
+from hexapods.domain.robot_library import LIBRARY, About
 from hexapods.domain.settings import SettingValues
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.tournament_file import (
@@ -77,21 +77,21 @@ def imported() -> Iterator[str]:
         document_of(model_robot(model_of(PRESETS["stiff"]), "Own", **QUICK_STEPS)), "Own"
     )
     assert made.id is not None
-    robot_documents.tell(made.id, robot_documents.About("Own", "tripod"))
+    LIBRARY.describe(made.id, About("Own", "tripod"))
     yield made.id
-    robot_documents.forget([made.id])
+    LIBRARY.forget([made.id])
 
 
 @pytest.mark.test
 def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(imported: str) -> None:
-    own = read_document(robot_documents.find(imported), "Own")
+    own = read_document(LIBRARY.find(imported), "Own")
     rules = rules_of(simulator="mujoco", gait="tripod", robot=HASTY, steps=10, robots=(own,))
     assert rules.gaits == ("tripod",)
     data = write_file(judged(rules, [EntryConfig(agent="q-learning", robot=own)]))
-    robot_documents.forget([imported])
+    LIBRARY.forget([imported])
     assert verify(read_file(data, "it"), workers=1) == []
     with pytest.raises(InvalidInput, match="no stored robot"):
-        robot_documents.find(imported)
+        LIBRARY.find(imported)
 
 
 def test_the_whole_repeats(kinematic: TournamentFile) -> None:

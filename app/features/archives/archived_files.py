@@ -32,6 +32,7 @@ from app.storage.untrusted_input import (
 )
 from hexapods.domain.errors import DamagedFile, HexapodError
 from hexapods.domain.kinematics import legs_of
+from hexapods.domain.robot_library import RobotLibrary
 from hexapods.domain.simulator import Motion
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import Action, Cells
@@ -94,13 +95,14 @@ def _chunks_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
     return chunks(file)
 
 
-def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
+def check_files(run: Run, files: Mapping[str, bytes], label: str, library: RobotLibrary) -> None:
     """Check that an imported walk's files are consistent with its config and can be displayed.
 
     Args:
         run: the imported run.
         files: contents of its files by name.
         label: name of the archive for error messages.
+        library: has the archive's robots, and those that are stored here.
 
     Raises:
         DamagedFile: if a file is unexpected, malformed or inconsistent.
@@ -110,7 +112,7 @@ def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
         if not is_file_of(name, run.kind):
             raise DamagedFile(f"{label} has {name}, which no {run.kind} has")
         if name in (TABLE, CHECKPOINT):
-            _check_table(run, name, data, f"{name} of {label}")
+            _check_table(run, name, data, f"{name} of {label}", library)
     try:
         if isinstance(run.config, RaceConfig):
             _check_race(run.config, files)
@@ -121,11 +123,11 @@ def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
         raise DamagedFile(f"{label} has a recording that cannot be shown: {error}") from error
 
 
-def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
+def _check_table(run: Run, name: str, data: bytes, label: str, library: RobotLibrary) -> None:
     config = run.config
     if not isinstance(config, TrainingConfig):
         return
-    checkpoint, meta, _ = checked_table(data, label, (config.agent,))
+    checkpoint, meta, _ = checked_table(data, label, (config.agent,), library)
     try:
         tables.check_fits(checkpoint, config, config.observation)
         if meta.agent != config.agent:

@@ -27,17 +27,18 @@ from app.storage.untrusted_input import (
     check_json,
     check_moment,
 )
-from hexapods import __version__
 from hexapods.domain.checks import check_format
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
+from hexapods.domain.robot_library import RobotLibrary
 from hexapods.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
 from hexapods.experiments.config import MAX_WORKERS
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import check_lane
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.runs.results import RaceResult
+from hexapods.version import __version__
 
 FORMAT = 2
 """Format of `run.json`."""
@@ -112,7 +113,11 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
 
 
 def read_run_json(
-    data: bytes, label: str, kinds: Collection[str], agents: Collection[str]
+    data: bytes,
+    label: str,
+    kinds: Collection[str],
+    agents: Collection[str],
+    library: RobotLibrary,
 ) -> tuple[Run, CurveRows]:
     """Parse and validate `run.json`; return the run and its learning curve.
 
@@ -121,6 +126,7 @@ def read_run_json(
         label: name of the file for error messages.
         kinds: names of the kinds of runs that are not left out.
         agents: names of the registered agents.
+        library: has the archive's robots, and those that are stored here.
 
     Raises:
         OtherFormat: if it is of another version.
@@ -141,9 +147,9 @@ def read_run_json(
         fields = msgspec.json.decode(rest, type=_File).run
         if fields.kind not in kinds:
             raise UnknownName("kind of run", fields.kind, kinds)
-        run = _run(fields, agents)
+        run = _run(fields, agents, library)
         curve = read_curve(curve_json)
-        _check(run, curve)
+        _check(run, curve, library)
     except DamagedFile:
         raise
     except HexapodError as error:
@@ -153,10 +159,10 @@ def read_run_json(
     return run, curve
 
 
-def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
+def _run(fields: _EndedRun, agents: Collection[str], library: RobotLibrary) -> Run:
     """Check the fields of a run, and return it."""
     kind, added = run_kinds()[fields.kind], added_kind(fields.kind)
-    config = from_json(kind.config, _decode(fields.config, dict[str, Any]))
+    config = from_json(kind.config, _decode(fields.config, dict[str, Any]), context=library)
     if fields.done > fields.total:
         raise ValueError("its progress does not fit together")
     # First, as what follows imports the agents.
@@ -190,7 +196,7 @@ def _decode(raw: Raw, kind: Any) -> Any:
     return msgspec.json.decode(raw, type=kind)
 
 
-def _check(run: Run, curve: CurveRows) -> None:
+def _check(run: Run, curve: CurveRows, library: RobotLibrary) -> None:
     """Check constraints on a run's fields beyond their types."""
     check_name(run.name)
     if check_tags(run.tags) != run.tags or check_notes(run.notes) != run.notes:
@@ -205,10 +211,10 @@ def _check(run: Run, curve: CurveRows) -> None:
         world_of(run).check(run.config.robot, run.config.simulator, run.config.steps)
     if not curve.is_ordered or (curve and run.kind != "training"):
         raise ValueError("its curve is none")
-    _check_lanes(run)
+    _check_lanes(run, library)
 
 
-def _check_lanes(run: Run) -> None:
+def _check_lanes(run: Run, library: RobotLibrary) -> None:
     if not isinstance(run.config, RaceConfig):
         if run.lane_training_ids:
             raise ValueError(f"it is no race but a {run.kind}, and has lanes")
@@ -224,7 +230,7 @@ def _check_lanes(run: Run) -> None:
         raise ValueError("its result is of other lanes")
     for lane in run.result.lanes:
         if lane.trained_robot is not None:
-            robot(lane.trained_robot)
+            robot(lane.trained_robot, library)
 
 
 def _check_agents(config: Config, agents: Collection[str]) -> None:

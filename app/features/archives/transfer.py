@@ -25,8 +25,8 @@ from app.storage.json_text import is_finite
 from app.storage.run import Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 from app.storage.run_kind import Rows, added_kind, run_kinds
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.robot_library import LIBRARY, RobotLibrary
 
 RUN = "run.json"
 MAX_RUNS = 100
@@ -161,13 +161,13 @@ def _checked(
     if RUN not in members:
         raise DamagedFile(f"{label} is no archive of a run: it has no {RUN}")
     documents = take_documents(members, label)
-    with robot_documents.lent(documents.values()):
-        run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", kinds, agents)
-        if (kind := added_kind(run.kind)) is None:
-            check_files(run, members, label)
-            rows: Rows = {}
-        else:
-            rows = kind.take_members(run, members, label)
+    library = RobotLibrary(LIBRARY, documents.values())
+    run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", kinds, agents, library)
+    if (kind := added_kind(run.kind)) is None:
+        check_files(run, members, label, library)
+        rows: Rows = {}
+    else:
+        rows = kind.take_members(run, members, label)
     robots = robots_to_store(run, documents, label)
     if not ids.is_plausible(run.id):
         run = replace(run, id=ids())

@@ -19,11 +19,11 @@ from app.storage.database.stored_rows import DecodedRows, put_rows, read_rows, r
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import Conflict, NotFound, StorageFailed, StorageFull
 from app.storage.stored_robot import MAX_ROBOTS, StoredRobot, distinct_name
-from hexapods.domain import robot_documents
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import Robot
-from hexapods.domain.robot_documents import ENDING
+from hexapods.domain.robot_documents import ENDING, is_id
+from hexapods.domain.robot_library import LIBRARY
 from hexapods.domain.text import check_name
 from hexapods.files import is_disk_full, write_atomically
 
@@ -72,19 +72,19 @@ class RobotStore:
         # Of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
         self.users: dict[str, Sequence[Column[Any]]] = {"run": (RUNS.c.config, RUNS.c.result)}
-        self._told: set[str] = set()
+        self._described: set[str] = set()
         self.version = next(_versions)
 
     @contextmanager
     def known(self) -> Iterator[None]:
         """Let this process find the robots by their ids, and know their names."""
-        robot_documents.use_folder(self._folder)
+        LIBRARY.add_folder(self._folder)
         try:
-            self._tell(self.stored(hidden=True))
+            self._describe(self.stored(hidden=True))
             yield
         finally:
-            robot_documents.leave_folder(self._folder)
-            robot_documents.forget(self._told)
+            LIBRARY.remove_folder(self._folder)
+            LIBRARY.forget(self._described)
 
     def stored(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
         """Return the robots in the order in which they were stored.
@@ -130,7 +130,7 @@ class RobotStore:
             NotFound: if there is no such robot.
             DamagedFile: if it is damaged.
         """
-        return robot_documents.find(self.get(robot_id).id)
+        return LIBRARY.find(self.get(robot_id).id)
 
     def origin(self, robot_id: str) -> RobotOrigin | None:
         """Return the file that a stored robot was read from; None if it was made here.
@@ -207,7 +207,7 @@ class RobotStore:
                 for robot_id in new:
                     self._remove_files(robot_id)
                 raise
-            self._tell(robot for robot, _ in new.values())
+            self._describe(robot for robot, _ in new.values())
 
     def _write_files(self, robot_id: str, document: bytes, origin: RobotOrigin | None) -> None:
         files = {ENDING: document}
@@ -266,7 +266,7 @@ class RobotStore:
             values = {name: value for name, value in _encode(changed).items() if name in fields}
             statement = update(ROBOTS).where(ROBOTS.c.id == robot_id).values(values)
             self._database.write(lambda connection: connection.execute(statement))
-            self._tell([changed])
+            self._describe([changed])
             return changed
 
     def replace(
@@ -313,8 +313,8 @@ class RobotStore:
                 self._database.write(work)
             if not is_used:
                 self._remove_files(old.id)
-                robot_documents.forget([old.id])
-            self._tell(self.stored(hidden=True))
+                LIBRARY.forget([old.id])
+            self._describe(self.stored(hidden=True))
             return self.get(about.id)
 
     def delete(self, robot_id: str) -> None:
@@ -343,7 +343,7 @@ class RobotStore:
         with self.lock:
             self._database.write(work)
             self._remove_files(robot_id)
-            robot_documents.forget([robot_id])
+            LIBRARY.forget([robot_id])
             self._changed()
 
     def delete_orphans(self) -> int:
@@ -364,10 +364,10 @@ class RobotStore:
                 path.unlink()
         return len(orphans)
 
-    def _tell(self, robots: Iterable[StoredRobot]) -> None:
+    def _describe(self, robots: Iterable[StoredRobot]) -> None:
         for robot in robots:
-            robot.tell()
-            self._told.add(robot.id)
+            LIBRARY.describe(robot.id, robot.about)
+            self._described.add(robot.id)
         self._changed()
 
     def _changed(self) -> None:
@@ -388,7 +388,7 @@ class RobotStore:
         return {noun: count for noun, count in counts.items() if count}
 
     def _path(self, robot_id: str, ending: str) -> Path:
-        if not robot_documents.is_id(robot_id):
+        if not is_id(robot_id):
             raise NotFound(f"there is no robot {robot_id!r}")
         return self._folder / f"{robot_id}{ending}"
 
@@ -430,7 +430,7 @@ def _encode(robot: StoredRobot) -> dict[str, Any]:
 
 def _decode(**row: Any) -> StoredRobot:
     """Return the robot of a row; raises HexapodError or ValueError if it is damaged."""
-    if not robot_documents.is_id(row["id"]):
+    if not is_id(row["id"]):
         raise ValueError("id: it is no id of a robot")
     if not check_name(row["name"]):
         raise ValueError("name: it is empty")

@@ -15,6 +15,7 @@ from app.storage.stored_robot import StoredRobot, distinct_name
 from hexapods.domain import robot_documents
 from hexapods.domain.gait import GaitSpec
 from hexapods.domain.robot import Robot, document_of, robot
+from hexapods.domain.robot_library import LIBRARY
 from tests.storage import stores
 
 
@@ -56,7 +57,7 @@ def test_it_is_there_after_a_restart_with_all_that_is_said_of_it(tmp_path: Path)
         rex = add(store, body(), "Rex")
         own = GaitSpec(1, 2, groups=((1, 2), (3, 4)))
         changed = store.robots.change(rex.id, name="Max", hidden=True, gait=own)
-    robot_documents.forget([rex.id])
+    LIBRARY.forget([rex.id])
     with stores.opened(tmp_path, None) as store:
         assert store.robots.get(rex.id) == changed
         assert store.robots.stored() == []
