@@ -98,7 +98,7 @@ class Phone:
             await self._timed("load the picture", self._get(f"/r/{self._room}/viewer/?view=leader"))
             value = round(self._chance.uniform(0, 0.6), 2)
             answer = {"card": _CARD, "value": value}
-            kept = await self.call("answer", "POST", f"{path}/predictions", answer)
+            stored_answer = await self.call("answer", "POST", f"{path}/predictions", answer)
             began_s = time.monotonic()
             run = await self.call("start", "POST", f"{path}/runs", {"settings": {}, "card": _CARD})
             await self._finished(path)
@@ -112,14 +112,17 @@ class Phone:
                 task.cancel()
             await asyncio.gather(*following, return_exceptions=True)
             await self._client.aclose()
-        own = next((entry for entry in results["cards"][0]["entries"] if entry["is_own"]), None)
+        own_entry = next(
+            (entry for entry in results["cards"][0]["entries"] if entry["is_own"]), None
+        )
         me = view["me"]
-        is_refused = "detail" in kept and "already" not in kept["detail"]
+        is_refused = "detail" in stored_answer and "already" not in stored_answer["detail"]
         return {
             "seed": me is not None and (me["seed"], me["name"]) == (who["seed"], who["name"]),
             "answer": not is_refused and me is not None and me["predictions"] == [answer],
-            "run": own is not None and own["run"] is not None and own["run"]["id"] == run["id"]
-            and own["run"]["distance_m"] is not None,
+            "run": own_entry is not None and own_entry["run"] is not None
+            and own_entry["run"]["id"] == run["id"]
+            and own_entry["run"]["distance_m"] is not None,
         }  # fmt: skip
 
     async def call(
@@ -171,15 +174,21 @@ class Phone:
     async def _load_page(self) -> None:
         address = f"/r/{self._room}"
         page = await self._get(address)
-        files = dict.fromkeys(urljoin(address, one) for one in _FILE.findall(page.text))
+        files = dict.fromkeys(urljoin(address, file) for file in _FILE.findall(page.text))
         await asyncio.gather(*map(self._get, files), self._get("/api/v1/options"))
 
     async def _finished(self, path: str) -> None:
         """Ask for the own result whenever an event tells of a change, until it is there."""
         while True:
             answer = await self.call("results", "GET", f"{path}/results?card={_CARD}")
-            own = next((entry for entry in answer["cards"][0]["entries"] if entry["is_own"]), None)
-            if own is not None and own["run"] is not None and own["run"]["state"] == "finished":
+            own_entry = next(
+                (entry for entry in answer["cards"][0]["entries"] if entry["is_own"]), None
+            )
+            if (
+                own_entry is not None
+                and own_entry["run"] is not None
+                and own_entry["run"]["state"] == "finished"
+            ):
                 return
             self._changed.clear()
             with suppress(TimeoutError):
@@ -287,30 +296,30 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
         codes.append(code)
     until, meter = asyncio.Event(), Meter(options.server)
     phones = [Phone(options.address, codes[n % len(codes)], n) for n in range(options.pupils)]
-    attending = [asyncio.create_task(one.attend(until, options.dropped_every)) for one in phones]
+    attending = [
+        asyncio.create_task(phone.attend(until, options.dropped_every)) for phone in phones
+    ]
     began_s, began_cpu_s = time.monotonic(), meter.cpu_s()
     await _all_finished(phones)
     lesson_s, lesson_cpu_s = time.monotonic() - began_s, meter.cpu_s() - began_cpu_s
     showing = []
     for code in codes:
-        (found,) = (await teacher.call("GET", f"/api/v1/rooms/{code}/results?card={_CARD}"))[
-            "cards"
-        ]
-        run_id = next(entry["run"]["id"] for entry in found["entries"] if entry["run"])
+        (card,) = (await teacher.call("GET", f"/api/v1/rooms/{code}/results?card={_CARD}"))["cards"]
+        run_id = next(entry["run"]["id"] for entry in card["entries"] if entry["run"])
         await teacher.call("PUT", f"/api/v1/rooms/{code}/spotlight", {"run_id": run_id})
         showing.append(asyncio.create_task(teacher.keep_in_motion(code)))
     await asyncio.sleep(5.0)
     lit_s, lit_cpu_s = time.monotonic(), meter.cpu_s()
-    bytes_before = sum(one.size_bytes for one in phones)
+    bytes_before = sum(phone.size_bytes for phone in phones)
     await asyncio.sleep(options.watch)
     watched_s, watched_cpu_s = time.monotonic() - lit_s, meter.cpu_s() - lit_cpu_s
-    size_bytes = sum(one.size_bytes for one in phones) - bytes_before
+    size_bytes = sum(phone.size_bytes for phone in phones) - bytes_before
     for task in showing:
         task.cancel()
     for code in codes:
         await teacher.call("POST", f"/api/v1/rooms/{code}/reveal", {"card": _CARD})
     until.set()
-    found = await asyncio.gather(*attending)
+    card = await asyncio.gather(*attending)
     for code in codes:
         await teacher.call("POST", f"/api/v1/rooms/{code}/end")
     rates = [
@@ -326,7 +335,7 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
         "rooms": len(codes),
         "drops": sum(phone.drops for phone in phones),
         **{
-            f"{what}s_lost": sum(not one[what] for one in found)
+            f"{what}s_lost": sum(not observation[what] for observation in card)
             for what in ("seed", "answer", "run")
         },
         "frames_per_s": {
@@ -417,18 +426,18 @@ class Meter:
         total = 0
         for pid in self._pids():
             with suppress(OSError):
-                found = re.search(
+                match = re.search(
                     r"^Pss:\s+(\d+)", Path(f"/proc/{pid}/smaps_rollup").read_text(), re.MULTILINE
                 )
-                total += 1024 * int(found[1]) if found else 0
+                total += 1024 * int(match[1]) if match else 0
         return total
 
     def _stats(self) -> list[list[str]]:
-        found = []
+        stats = []
         for pid in self._pids():
             with suppress(OSError):
-                found.append(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split())
-        return found
+                stats.append(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split())
+        return stats
 
     def _pids(self) -> list[int]:
         pids = [] if self._pid is None else [self._pid]

@@ -35,8 +35,8 @@ class Pass(NamedTuple):
 
 def learners(simulator: str, count: int) -> list[Trial]:
     """As many trials of Table 1's learners after 500 steps of practice."""
-    given = {"seeds": -(-count // 4), "simulator": simulator}
-    trials = Plan(experiment_config("sweep", given)).trials()
+    values = {"seeds": -(-count // 4), "simulator": simulator}
+    trials = Plan(experiment_config("sweep", values)).trials()
     return [trial for trial in trials if trial.setting.role == "learner"][:count]
 
 
@@ -47,19 +47,19 @@ def timed(client: Client, trials: Sequence[Trial]) -> Pass:
     return Pass(time.perf_counter() - began_s, sum(outcome.compute_s for outcome in outcomes))
 
 
-def report(one: Sequence[Pass], two: Sequence[Pass], trials: int) -> dict[str, object]:
+def report(single: Sequence[Pass], double: Sequence[Pass], trials: int) -> dict[str, object]:
     """The figures of all repeats."""
-    ratios = [a.wall_s / b.wall_s for a, b in zip(one, two, strict=True)]
-    overheads_s = [(a.wall_s - a.compute_s) / trials for a in one]
-    shares = [(a.wall_s - a.compute_s) / a.compute_s for a in one]
+    ratios = [a.wall_s / b.wall_s for a, b in zip(single, double, strict=True)]
+    overheads_s = [(a.wall_s - a.compute_s) / trials for a in single]
+    shares = [(a.wall_s - a.compute_s) / a.compute_s for a in single]
     return {
         "trials": trials,
-        "repeats": len(one),
+        "repeats": len(single),
         "cores": os.cpu_count(),
         "load_before": round(os.getloadavg()[0], 2),
-        "trial_s": round(statistics.median(a.compute_s / trials for a in one), 4),
-        "trials_per_s_one_worker": round(statistics.median(trials / a.wall_s for a in one), 3),
-        "trials_per_s_two_workers": round(statistics.median(trials / b.wall_s for b in two), 3),
+        "trial_s": round(statistics.median(a.compute_s / trials for a in single), 4),
+        "trials_per_s_one_worker": round(statistics.median(trials / a.wall_s for a in single), 3),
+        "trials_per_s_two_workers": round(statistics.median(trials / b.wall_s for b in double), 3),
         "speedups": [round(ratio, 3) for ratio in ratios],
         "parallel_efficiency": round(statistics.median(ratios) / 2, 3),
         "overhead_ms": round(1e3 * statistics.median(overheads_s), 2),

@@ -96,8 +96,8 @@ def namespaces() -> Iterator[tuple[int, int]]:
             _ip("link", "set", device, "netns", name)
             inside = ("-netns", name)
             _ip(*inside, "address", "add", f"{address}/24", "dev", device)
-            for one in (device, "lo"):
-                _ip(*inside, "link", "set", one, "up")
+            for interface in (device, "lo"):
+                _ip(*inside, "link", "set", interface, "up")
             _ip(*inside, "link", "set", device, "mtu", str(_MTU), "txqueuelen", str(_QUEUE))
         yield devices[0], devices[1]
     finally:

@@ -92,11 +92,11 @@ def _walk(imported: ImportedRobot) -> None:
         return race.standings[0].total_distance_m
 
     groups = len(resolve(imported.gait, robot.azimuths_deg).groups)
-    first, both = (distance_m("linear-model", steps) for steps in (_STEPS, 2 * _STEPS))
+    first, distance_of_100 = (distance_m("linear-model", steps) for steps in (_STEPS, 2 * _STEPS))
     print(
         f"  grid {side_m:.3f} m, law {_STEPS * side_m / (groups + 1):.2f} m, greedy "
         f"{distance_m('greedy', _STEPS):.2f} m, linear-model 1-50 {first:.2f} m, 51-100 "
-        f"{both - first:.2f} m"
+        f"{distance_of_100 - first:.2f} m"
     )
 
 

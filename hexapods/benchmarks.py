@@ -1,4 +1,4 @@
-"""The verb `benchmark`: score an agent by a frozen protocol, and what came of it."""
+"""The verb `benchmark`, which scores an agent by a frozen protocol, and its result."""
 
 import html
 import os
@@ -244,28 +244,28 @@ def run_benchmark(
     """
     check_kept(config)
     plans, runs = plan_tasks(config), runs_of(config)
-    with kept_runs(score_file, config) as kept:
-        missing = [run for run in runs if run not in kept.results]
+    with kept_runs(score_file, config) as progress:
+        missing = [run for run in runs if run not in progress.results]
         done = len(runs) - len(missing)
         if on_run is not None:
             on_run(done, len(runs))
         with closing(run_all(config, plans, missing, spec, may_continue)) as outcomes:
             for run, result in outcomes:
-                kept.add(run, result)
+                progress.add(run, result)
                 done += 1
                 if on_run is not None:
                     on_run(done, len(runs))
         if done < len(runs):
             raise KeyboardInterrupt
-        benchmarked = _benchmark(config, plans, kept, spec)
+        benchmarked = _benchmark(config, plans, progress, spec)
         if score_file is not None:
             benchmarked.save(score_file)
-            kept.delete()
+            progress.delete()
         return benchmarked
 
 
 def _benchmark(
-    config: BenchmarkConfig, plans: Sequence[TaskPlan], kept: KeptRuns, spec: ClusterSpec
+    config: BenchmarkConfig, plans: Sequence[TaskPlan], progress: KeptRuns, spec: ClusterSpec
 ) -> Benchmark:
     best_known = all_best_known(config, plans, spec.workers or cores())
-    return Benchmark(config, score_content(config, plans, kept.results, best_known))
+    return Benchmark(config, score_content(config, plans, progress.results, best_known))

@@ -12,7 +12,7 @@ from multiprocessing import spawn, util
 from typing import Any
 
 _MAIN = ("init_main_from_name", "init_main_from_path")
-"""What a process is told of the main module that it is to import."""
+"""Keys of `multiprocessing`'s preparation data that name the main module to import."""
 _OPTIONS = "_args_from_interpreter_flags"
 """Function that returns the options of the interpreter for a process; no public one has them."""
 _SAFE_PATH = "-P"
@@ -22,7 +22,7 @@ _usual_preparation, _usual_options = spawn.get_preparation_data, vars(util)[_OPT
 
 
 class _Start(threading.local):
-    """How processes start that this thread starts now."""
+    """Thread-local flags: how the processes that this thread starts are prepared."""
 
     is_clean = False
     imports_main = True
@@ -33,7 +33,9 @@ _start = _Start()
 
 @contextmanager
 def clean_start(*, imports_main: bool) -> Iterator[None]:
-    """Let processes that this thread starts meanwhile begin without what is not theirs.
+    """Start processes within the context with a safe module path, and without the main module.
+
+    This holds for processes that this thread starts.
 
     Args:
         imports_main: whether they import the main module all the same.

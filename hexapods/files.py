@@ -39,17 +39,17 @@ def write_atomically(path: Path, data: bytes | memoryview | Iterable[bytes | mem
     Raises:
         OSError: if it cannot be written; no partial file is left.
     """
-    part = path.with_name(f".{path.name}.part")
+    partial = path.with_name(f".{path.name}.part")
     try:
-        with part.open("wb") as file:
+        with partial.open("wb") as file:
             file.writelines([data] if isinstance(data, bytes | memoryview) else data)
             file.flush()
             os.fsync(file.fileno())
-        part.replace(path)
+        partial.replace(path)
         sync_folder(path.parent)
     except BaseException:
         with suppress(OSError):
-            part.unlink()
+            partial.unlink()
         raise
 
 

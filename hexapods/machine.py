@@ -27,7 +27,7 @@ def cores() -> int:
 
 
 def description() -> dict[str, Any]:
-    """Return what summaries and files say of the machine on which they were computed."""
+    """Return platform and number of cores of this machine, as summaries and files record them."""
     return {"platform": platform.platform(), "cores": os.cpu_count()}
 
 

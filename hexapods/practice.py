@@ -46,10 +46,10 @@ from hexapods.runs.training import Learner
 from hexapods.trainings import CurvePoint, Table, Training, learned_by, read_table
 
 FIELDS = tuple(
-    one.name
-    for one in fields(TrainingConfig)
+    field.name
+    for field in fields(TrainingConfig)
     # Practice here is as fast as it can be; agent and settings are arguments of their own.
-    if one.name not in ("agent", "pace", "settings")
+    if field.name not in ("agent", "pace", "settings")
 )
 """Names of the arguments that are fields of a training."""
 OnRecord = Callable[[TrainingRecord], object]

@@ -95,7 +95,7 @@ class Child:
     _process: BaseProcess
 
     def __init__(self, target: Callable[[Connection], None], set_up: SetUp) -> None:
-        """Start nothing yet.
+        """Describe the process; `start` starts it.
 
         Args:
             target: function of a module, called in the process with its end of the pipe.
@@ -311,7 +311,7 @@ def _kill_group(pid: int) -> None:
     Args:
         pid: id of the process that leads or led it.
     """
-    # There is none any more, or none that may be killed, as macOS says of zombies.
+    # The group has ended, or consists of zombies, which macOS does not allow to kill.
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(pid, signal.SIGKILL)
 

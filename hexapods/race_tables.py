@@ -16,7 +16,7 @@ class Standing(NamedTuple):
     """A lane at the end of a race."""
 
     rank: int | None
-    """By the distance at time-out; None if the race has none."""
+    """Rank by the distance at time-out; None if the race has no time-out."""
     lane: int
     """Number of the lane, from 0 on."""
     agent: str

@@ -47,9 +47,9 @@ from hexapods.result_table import ResultTable
 from hexapods.runs.config import SimulatorName
 
 _FIELDS = tuple(
-    one.name
-    for one in fields(ExperimentConfig)
-    if one.name not in ("experiment", "settings", "blocks")
+    field.name
+    for field in fields(ExperimentConfig)
+    if field.name not in ("experiment", "settings", "blocks")
 )
 _SINGLE = ("seeds", "seed", "simulator", "tolerance", "reward")
 """Fields that have one value; all others, and settings of agents, have several, or one."""
@@ -290,13 +290,13 @@ def _read(fields_and_settings: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def agent_of_processes(given: str | AgentClass) -> str:
+def agent_of_processes(agent: str | AgentClass) -> str:
     """Return the name of an agent that the processes of an experiment can import.
 
     Raises:
         UnknownName, InvalidInput: if there is none, or it is in no file that they could read.
     """
-    name = agent_name(given)
+    name = agent_name(agent)
     module_name, _, class_name = name.partition(":")
     module = sys.modules.get(module_name) if class_name else None
     if module is None:

@@ -54,7 +54,7 @@ class View:
         Raises:
             OSError: if the file cannot be written.
         """
-        # It must be there for as long as the browser may load it again: longer than this process.
+        # The browser may load the file again after this process has ended.
         folder = platformdirs.user_cache_path("racing-hexapods", False, ensure_exists=True)
         path = self.save(folder / "view.html")
         webbrowser.open(path.as_uri())

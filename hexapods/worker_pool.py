@@ -42,7 +42,7 @@ class WorkerPool(Executor):
         idle_s: float | None = None,
         most_bytes: int | None = None,
     ) -> None:
-        """Start nothing yet.
+        """Create the pool; each process starts with the first call that it gets.
 
         Args:
             count: number of processes.
@@ -184,7 +184,7 @@ class WorkerPool(Executor):
 
 
 def _serve_calls(pipe: Connection) -> None:
-    """Be a worker: call what comes, and send what it returns or raises."""
+    """Run a worker's loop: call each received function, and send its result or exception back."""
     while True:
         reply: tuple[bool, Any]
         try:

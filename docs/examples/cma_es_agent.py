@@ -53,9 +53,10 @@ class CmaEs:
         self.mean = self.mean + self.deviation * step
         lengths, axes = np.linalg.eigh(self.covariance)
         whitened = axes @ ((axes.T @ step) / np.sqrt(lengths))
-        kept, kept_path = 1 - self.c_sigma, 1 - self.c_path
+        kept_share, kept_path = 1 - self.c_sigma, 1 - self.c_path
         self.path_of_deviation = (
-            kept * self.path_of_deviation + (self.mass * (1 - kept**2)) ** 0.5 * whitened
+            kept_share * self.path_of_deviation
+            + (self.mass * (1 - kept_share**2)) ** 0.5 * whitened
         )
         length = float(np.linalg.norm(self.path_of_deviation))
         self.path = kept_path * self.path

@@ -158,9 +158,9 @@ class Agent:
             self.gait.next, self.earned = next_move, float(state["earned"])
 
 
-def _similarity(some: Floats, others: Floats) -> Floats:
+def _similarity(ways_a: Floats, ways_b: Floats) -> Floats:
     """Return Matérn 5/2 kernels of ways of walking, (n, m)."""
-    distance = np.sqrt(((some[:, None] - others) ** 2).mean(2)) / LENGTH
+    distance = np.sqrt(((ways_a[:, None] - ways_b) ** 2).mean(2)) / LENGTH
     scaled = 5**0.5 * distance
     return np.asarray((1 + scaled + scaled**2 / 3) * np.exp(-scaled))
 

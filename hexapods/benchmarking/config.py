@@ -26,7 +26,9 @@ WITHOUT_PRACTICE = 0
 
 @dataclass(frozen=True, kw_only=True)
 class BenchmarkConfig(Record):
-    """All that decides a benchmark's result. `benchmark_config` completes what is left out.
+    """Config of a benchmark: its protocol, agent, settings, tasks, budgets and seeds.
+
+    `benchmark_config` completes what is left out.
 
     Attributes:
         agent: a registered name, or `my.module:Agent`.

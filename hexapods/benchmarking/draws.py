@@ -15,7 +15,7 @@ from hexapods.domain.world import World
 
 _LEGS, _GROUPS = (6, 8), 3
 _OFF_DEG = 8.0
-"""By how much a leg of a drawn body is turned away from its place in a regular ring, at most."""
+"""Largest angle between a leg of a drawn body and its place in a regular ring [°]."""
 _SCALED = ("coxa_m", "femur_m", "tibia_m", "torso_kg", "femur_kg", "tibia_kg", "servo_kp")
 _SCALES = (0.8, 1.3)
 _FRICTION = (0.5, 1.0)

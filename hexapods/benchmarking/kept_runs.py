@@ -15,7 +15,7 @@ from hexapods.experiments.worker import difference, versions
 from hexapods.files import lock_file
 
 ENDING = ".runs"
-"""Of the file's name, after that of the score file."""
+"""Ending of the file's name, after the name of the score file."""
 
 
 class KeptRuns:

@@ -16,7 +16,7 @@ from hexapods.runs.config import WalkingProblem
 from hexapods.runs.seeding import generator
 
 PROTOCOLS: Mapping[str, str] = {"hexabench-1": "hexabench_1.json"}
-"""By name the file of each protocol that this version knows."""
+"""Files of the protocols that this version knows, by name."""
 DEFAULT_PROTOCOL = "hexabench-1"
 PLAIN_SEED = 0
 """Root seed whose drawn tasks have a stored best known distance."""

@@ -7,7 +7,7 @@ from hexapods.drawing.colormap import Rgb, mix
 
 HOLLOW: Rgb = (52, 60, 74)
 TOP: Rgb = (134, 144, 160)
-"""Of rough ground: its lowest points and the highest bumps."""
+"""Colours of rough ground: its lowest points and its highest bumps."""
 ICE: Rgb = (64, 160, 228)
 """Ground with less friction than before."""
 GRIP: Rgb = (150, 104, 62)

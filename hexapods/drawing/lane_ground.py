@@ -21,7 +21,7 @@ _CELL_M = 0.04
 """Width of a cell of the drawn bumps; half the distance between independent heights."""
 _BANDS = 6
 _OPACITY = 0.75
-"""Of patches and of ground with another friction, which leave its grid visible."""
+"""Opacity of patches and of ground with another friction, so that its grid stays visible."""
 _ARROW_M = 0.14
 _LAYER_M = 0.0006
 """Height of what lies on the ground over what is below, against z-fighting."""
@@ -171,13 +171,13 @@ def _between(corners: FloatArray, from_m: float, to_m: float, origin: Origin) ->
         inside = sign * _on_ground(corners, origin)[:, 1] - limit if len(corners) else corners
         clipped: list[FloatArray] = []
         for number in range(len(corners)):
-            here, after = inside[number - 1], inside[number]
-            if (here < 0) != (after < 0):
-                share = here / (here - after)
+            distance, next_distance = inside[number - 1], inside[number]
+            if (distance < 0) != (next_distance < 0):
+                share = distance / (distance - next_distance)
                 clipped.append(
                     corners[number - 1] + share * (corners[number] - corners[number - 1])
                 )
-            if after >= 0:
+            if next_distance >= 0:
                 clipped.append(corners[number])
         corners = np.array(clipped)
     return corners

@@ -19,7 +19,7 @@ from hexapods.physics.mjcf import VISIBLE_GROUP, compile_visual_model, is_painte
 
 _ANTENNA_M = 0.15
 _OVER_TORSO_M = 0.1
-"""Of the antenna's top, at least."""
+"""Least height of the antenna's top over the top of the torso [m]."""
 
 
 class Part(NamedTuple):

@@ -50,7 +50,7 @@ class Robots:
         self._lane_colors = [lane_spec.color for lane_spec in spec.lane_specs]
         self._is_ghost = is_ghost
         self._conditions: list[World | None] = [UNDISTURBED for _ in xs]
-        """Of each lane as drawn; None where no robot is drawn."""
+        """Conditions of each lane as drawn; None where no robot is drawn."""
         self._poses: list[NDArray[np.floating[Any]]] = [mesh.default_qpos for _ in xs]
         self._body_poses = [mesh.body_poses(mesh.default_qpos).moved(x) for x in xs]
         self._batches: list[viser.BatchedMeshHandle] = []

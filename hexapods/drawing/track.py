@@ -13,7 +13,7 @@ WORLD = "/world"
 """Root node of the scene, which the follow camera translates."""
 
 Position = tuple[float, float, float]
-"""Of a scene node [m]: x across the track, y along it, z up."""
+"""Position of a scene node [m]: x across the track, y along it, z up."""
 
 SQUARE_M, TICK_M = 0.5, 0.05
 LAMP = (-0.7, -0.5, 3.2)

@@ -1,4 +1,4 @@
-"""Where trials run: worker processes of this machine, or an existing Dask cluster."""
+"""Workers that trials run on: processes of this machine, or an existing Dask cluster."""
 
 import asyncio
 import logging
@@ -220,15 +220,15 @@ def _check_workers(client: "Client", address: str) -> None:
             f"the scheduler at {address} has no workers; start some with `dask worker {address} "
             "--nthreads 1`"
         ) from error
-    here = versions()
+    own_versions = versions()
     versions_by_worker: dict[str, Any] = client.run(versions, on_error="return")
-    for worker, there in versions_by_worker.items():
-        if not isinstance(there, dict):
+    for worker, worker_versions in versions_by_worker.items():
+        if not isinstance(worker_versions, dict):
             raise InvalidInput(
-                f"the worker at {worker} cannot run trials ({_first_line(there)}); install "
-                f"racing-hexapods {here['racing-hexapods']} there"
+                f"the worker at {worker} cannot run trials ({_first_line(worker_versions)}); "
+                f"install racing-hexapods {own_versions['racing-hexapods']} there"
             )
-        differs = difference(here, there)
+        differs = difference(own_versions, worker_versions)
         if differs is not None:
             raise InvalidInput(
                 f"the worker at {worker} would compute other results: it has {differs}"

@@ -165,20 +165,20 @@ def settings_by_name(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSet
     return declarations
 
 
-def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentConfig:
-    """Create the config of an experiment from given values and the experiment's defaults.
+def experiment_config(experiment: str, values: Mapping[str, Any]) -> ExperimentConfig:
+    """Create the config of an experiment from values and the experiment's defaults.
 
     Args:
         experiment: name of the experiment's preset.
-        given: values by attribute of `ExperimentConfig`, and lists of values of the agents'
-            settings by name; None counts as not given.
+        values: values by attribute of `ExperimentConfig`, and lists of values of the agents'
+            settings by name; None stands for the default.
 
     Raises:
         UnknownName: if the experiment or a field does not exist.
         InvalidInput: if a value is invalid.
     """
     preset = preset_of(experiment)
-    specified = {name: value for name, value in given.items() if value is not None}
+    specified = {name: value for name, value in values.items() if value is not None}
     defaults = preset.defaults
     if specified.get("simulator") == "kinematic":
         defaults = {**defaults, **preset.ideal_defaults}
@@ -195,11 +195,11 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
                 "reference anyway"
             )
     settings = {
-        name: tuple(_normalized(value, own) for value in specified[name])
+        name: tuple(_normalized(value, declarations) for value in specified[name])
         if name in specified
         else default
-        for name, own in declared.items()
-        for default in [tuple(dict.fromkeys(setting.default for setting in own))]
+        for name, declarations in declared.items()
+        for default in [tuple(dict.fromkeys(setting.default for setting in declarations))]
         # Agents of different defaults each keep their own.
         if name in specified or (len(default) == 1 and default[0] is not REQUIRED)
     }
@@ -211,12 +211,12 @@ def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentCo
     )
 
 
-def _normalized(value: Value, own: Sequence[DeclaredSetting]) -> Value:
+def _normalized(value: Value, declarations: Sequence[DeclaredSetting]) -> Value:
     """Normalise a value by the first declaration that accepts it; else raise the last error."""
-    for setting in own[:-1]:
+    for setting in declarations[:-1]:
         with contextlib.suppress(InvalidInput):
             return setting.normalized(value)  # type: ignore[no-any-return]
-    return own[-1].normalized(value)  # type: ignore[no-any-return]
+    return declarations[-1].normalized(value)  # type: ignore[no-any-return]
 
 
 def by_option(data: Mapping[str, Any]) -> dict[str, Any]:

@@ -76,7 +76,7 @@ class _BatchSizer:
         self._trial_s: float | None = None
 
     def update(self, done: Sequence[Outcome]) -> None:
-        mean_s = ordered_sum(one.compute_s for one in done) / len(done)
+        mean_s = ordered_sum(outcome.compute_s for outcome in done) / len(done)
         previous_s = mean_s if self._trial_s is None else self._trial_s
         self._trial_s = max(0.7 * previous_s + 0.3 * mean_s, 1e-6)
         self.size = max(1, min(2 * self.size, MAX_BATCH, int(BATCH_S / self._trial_s)))

@@ -25,8 +25,8 @@ def failures_sentence(counts: Mapping[str, Any]) -> str:
     if not counts["failed"]:
         return ""
     first: dict[str, str] = {}
-    for one in failed_trials(counts):
-        first.setdefault(one["reason"], one["label"].replace("\N{NO-BREAK SPACE}", " "))
+    for trial in failed_trials(counts):
+        first.setdefault(trial["reason"], trial["label"].replace("\N{NO-BREAK SPACE}", " "))
     reasons = [f"{label}: {reason}" for reason, label in first.items()]
     more = ["and for other reasons"] if len(reasons) > _MAX_REASONS else []
     return f"{failures_text(counts)}: {'; '.join([*reasons[:_MAX_REASONS], *more])}"

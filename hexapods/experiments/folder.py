@@ -76,7 +76,7 @@ class ResultsFolder(Progress):
         if lines:
             self._check(self._head(lines[0]))
         self._end = sum(map(len, lines))
-        # What is refused is left as it is.
+        # A file that is refused stays unchanged.
         file.truncate(self._end)
         if not lines:
             config = to_json(self.plan.config)
@@ -131,16 +131,18 @@ class ResultsFolder(Progress):
         if differs is not None:
             raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")
         try:
-            there = by_option(to_json(from_json(type(self.plan.config), head["config"])))
+            stored = by_option(to_json(from_json(type(self.plan.config), head["config"])))
         except (KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
-        here = by_option(to_json(self.plan.config))
+        requested = by_option(to_json(self.plan.config))
         # Each trial's seed depends on its number only, so that more seeds extend the results.
-        every = dict.fromkeys((*here, *there))
-        names = [name for name in every if name != "seeds" and here.get(name) != there.get(name)]
+        every = dict.fromkeys((*requested, *stored))
+        names = [
+            name for name in every if name != "seeds" and requested.get(name) != stored.get(name)
+        ]
         if "experiment" in names:
             raise InvalidInput(
-                f"{self.path} has results of another experiment, {there['experiment']}; {_CHOOSE}"
+                f"{self.path} has results of another experiment, {stored['experiment']}; {_CHOOSE}"
             )
         if names:
             options = ", ".join(map(self.plan.config.option_of, names))

@@ -23,8 +23,10 @@ OBSERVATION_LABELS: Mapping[str, str] = {
 
 def parameter_text(name: str, value: Any, agent: str) -> str:
     """Describe a value of a training's field or of a setting of its agent: `α 0.3`."""
-    own = declared_fields(TrainingConfig)
-    return (own[name] if name in own else agent_settings(agent)[name]).describe(value)
+    training_fields = declared_fields(TrainingConfig)
+    return (
+        training_fields[name] if name in training_fields else agent_settings(agent)[name]
+    ).describe(value)
 
 
 def gait_name(gait: str) -> str:
@@ -47,17 +49,19 @@ def world_name(world: str) -> str:
         return world
 
 
-def _disturbance_name(one: Disturbance) -> str:
+def _disturbance_name(disturbance: Disturbance) -> str:
     """Describe a disturbance by its fields: `Weak servos (legs 1, 2; share of torque 0.5)`."""
-    declared = declared_fields(type(one))  # type: ignore[arg-type]  # of a class, not an instance
-    usual = {field.name: field.default for field in fields(one)} | {"kind": one.kind}
+    declared = declared_fields(type(disturbance))  # type: ignore[arg-type]  # of a class, not an instance
+    usual = {field.name: field.default for field in fields(disturbance)} | {
+        "kind": disturbance.kind
+    }
     values = [
         f"{(declared[name].about.title if name in declared else name).lower()} "
         + (", ".join(map(str, value)) if isinstance(value, list) else format(value))
-        for name, value in as_mapping(one).items()
+        for name, value in as_mapping(disturbance).items()
         if value != usual[name]
     ]
-    return f"{one.title} ({'; '.join(values)})" if values else one.title
+    return f"{disturbance.title} ({'; '.join(values)})" if values else disturbance.title
 
 
 def robot_name(robot: str) -> str:

@@ -108,8 +108,8 @@ class LocalWorkers:
 def _wait_until_started(pool: WorkerPool) -> None:
     """Wait until all processes run; raises ClusterLost if one cannot be started."""
     try:
-        for one in [pool.submit(os.getpid) for _ in range(pool.count)]:
-            one.result()
+        for probe in [pool.submit(os.getpid) for _ in range(pool.count)]:
+            probe.result()
     except BrokenExecutor as error:
         raise ClusterLost(
             "no worker process can be started; the workers import the program for its agents: does "

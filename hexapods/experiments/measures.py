@@ -33,18 +33,24 @@ def measure_against_references(strata: Sequence[SettingResults], seed: int) -> d
         and of the best known (`of_best_known`), and shares of seeds (`walkers`, `beats_greedy`, …);
         None where nothing can be computed.
     """
-    seen = [one for one in strata if one.total_m]
-    walked = [one for one in seen if one.reference.total_m is not None]
-    raced = [one for one in strata if one.finished_m and one.reference.finished_m is not None]
-    total = [_as_share(one.total_m, one.reference.total_m) for one in walked]
-    finished = [_as_share(one.finished_m, one.reference.finished_m) for one in raced]
+    seen = [stratum for stratum in strata if stratum.total_m]
+    walked = [stratum for stratum in seen if stratum.reference.total_m is not None]
+    raced = [
+        stratum
+        for stratum in strata
+        if stratum.finished_m and stratum.reference.finished_m is not None
+    ]
+    total = [_as_share(stratum.total_m, stratum.reference.total_m) for stratum in walked]
+    finished = [_as_share(stratum.finished_m, stratum.reference.finished_m) for stratum in raced]
     # A mean over some of the gaits could not be compared with that over all.
-    is_known = all(one.reference.best_known_m is not None for one in seen)
-    known = [_as_share(one.total_m, one.reference.best_known_m) for one in seen if is_known]
+    is_known = all(stratum.reference.best_known_m is not None for stratum in seen)
+    of_best_known = [
+        _as_share(stratum.total_m, stratum.reference.best_known_m) for stratum in seen if is_known
+    ]
     return {
         "relative": iqm_entry(total, seed),
         "relative_finished": iqm_entry(finished, seed),
-        "of_best_known": iqm_entry(known, seed),
+        "of_best_known": iqm_entry(of_best_known, seed),
         "walkers": _share(total, lambda points: share_at_least(points, WALKER_SHARE)),
         "beats_greedy": _share(finished, _ahead_of_greedy, exceeds=0.5),
         "beats_greedy_total": _share(total, _ahead_of_greedy, exceeds=0.5),
@@ -58,7 +64,7 @@ def best_known_relative(strata: Sequence[SettingResults]) -> float | None:
     None if one of them lacks either.
     """
     shares = []
-    for reference in (one.reference for one in strata if one.total_m):
+    for reference in (stratum.reference for stratum in strata if stratum.total_m):
         if reference.best_known_m is None or reference.total_m is None:
             return None
         shares.append(reference.best_known_m / reference.total_m)
@@ -99,9 +105,9 @@ def curve_entry(columns: Sequence[Points], seed: int) -> dict[str, list[Any]]:
     """Return a curve: interquartile means with their intervals, and means, of each column [m]."""
     intervals = [iqm_interval((points,), seed) for points in columns]
     return {
-        "iqm_m": [one.value for one in intervals],
-        "low_m": [one.low for one in intervals],
-        "high_m": [one.high for one in intervals],
+        "iqm_m": [estimate.value for estimate in intervals],
+        "low_m": [estimate.low for estimate in intervals],
+        "high_m": [estimate.high for estimate in intervals],
         "mean_m": [fmean(points) for points in columns],
     }
 

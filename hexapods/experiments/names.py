@@ -73,7 +73,7 @@ def _values_name(name: str, tried: Sequence[Any], config: ExperimentConfig) -> s
     title = about.title
     if about.symbol:
         title = title.replace(about.quantity or title, about.symbol)
-    texts = [format(one, "g" if isinstance(one, float) else "") for one in tried]
+    texts = [format(value, "g" if isinstance(value, float) else "") for value in tried]
     if len(texts) > _MAX_VALUES:
         values = f"in {len(texts)} values from {texts[0]} to {texts[-1]}"
     else:
@@ -95,7 +95,10 @@ def setting_names(
     """
     differing = models if len(set(models.values()) - {None}) > 1 else {}
     varied = _varied(settings, (*parameters, *_PLACE))
-    return {one["key"]: _name(one, varied, differing.get(one["key"])) for one in settings}
+    return {
+        setting["key"]: _name(setting, varied, differing.get(setting["key"]))
+        for setting in settings
+    }
 
 
 def trial_names(plan: Plan, keys: Iterable[str]) -> dict[str, str]:
@@ -104,12 +107,12 @@ def trial_names(plan: Plan, keys: Iterable[str]) -> dict[str, str]:
     Unlike a setting's, it says where the trial walks even if all walk there:
     `Q-learning, α 0.3, Left-right, opposite, feet measured, stiff robot, seed 12`.
     """
-    settings = [one.fields for one in plan.settings]
+    settings = [setting.fields for setting in plan.settings]
     varied = _varied(settings, tuple(plan.settings[0].parameters))
     names = {
-        one.key: _name(fields, (*varied, *_PLACE), one.trial.plans_with)
-        + (", timed alone" if one.role == "timed" else "")
-        for one, fields in zip(plan.settings, settings, strict=True)
+        setting.key: _name(fields, (*varied, *_PLACE), setting.trial.plans_with)
+        + (", timed alone" if setting.role == "timed" else "")
+        for setting, fields in zip(plan.settings, settings, strict=True)
     }
     return {
         key: f"{names[setting]}, seed {number}" if setting in names else key
@@ -120,17 +123,17 @@ def trial_names(plan: Plan, keys: Iterable[str]) -> dict[str, str]:
 
 def _varied(settings: Sequence[Mapping[str, Any]], names: Iterable[str]) -> list[str]:
     """Return the names in which settings differ; what an agent does not have is None there."""
-    return [name for name in names if len({one[name] for one in settings} - {None}) > 1]
+    return [name for name in names if len({setting[name] for setting in settings} - {None}) > 1]
 
 
-def _name(one: Mapping[str, Any], named: Iterable[str], model: PlanningModel | None) -> str:
-    parts = [title_of(one["agent"]), *([] if model is None else [PLANNING_MODEL_TITLES[model]])]
-    return ", ".join([*parts, *filter(None, (_value_name(one, name) for name in named))])
+def _name(setting: Mapping[str, Any], fields: Iterable[str], model: PlanningModel | None) -> str:
+    parts = [title_of(setting["agent"]), *([] if model is None else [PLANNING_MODEL_TITLES[model]])]
+    return ", ".join([*parts, *filter(None, (_value_name(setting, name) for name in fields))])
 
 
-def _value_name(one: Mapping[str, Any], name: str) -> str:
+def _value_name(setting: Mapping[str, Any], name: str) -> str:
     """Return a value in words; empty where there is nothing to tell."""
-    value = one[name]
+    value = setting[name]
     if value is None or (name, value) in (("world", "flat"), ("steps", 0)):
         return ""
     if name == "gait":
@@ -141,4 +144,4 @@ def _value_name(one: Mapping[str, Any], name: str) -> str:
         return OBSERVATION_LABELS.get(value, value)
     if name == "robot":
         return robot_name(value)
-    return parameter_text(name, value, one["agent"])
+    return parameter_text(name, value, setting["agent"])

@@ -91,7 +91,7 @@ class TrialSetting:
 
     @property
     def fields(self) -> dict[str, Any]:
-        """All that identifies it, by name; search agents have no training parameters."""
+        """Fields that identify the setting, by name; search agents have no training parameters."""
         return {
             "gait": self.gait,
             "observation": self.training.observation,
@@ -197,10 +197,12 @@ def trial_seed(seed: int, setting: int, seed_number: int) -> int:
 def _settings(config: ExperimentConfig) -> list[TrialSetting]:
     preset = config.preset
     learners, references, in_one_go, timed = [], [], [], []
-    own = {agent: agent_settings(agent) for agent in (*config.agents, *RIVALS)}
+    declared = {agent: agent_settings(agent) for agent in (*config.agents, *RIVALS)}
     for name in config.settings:
-        if not any(name in settings for settings in own.values()):
-            raise UnknownName("setting", name, dict.fromkeys(chain.from_iterable(own.values())))
+        if not any(name in settings for settings in declared.values()):
+            raise UnknownName(
+                "setting", name, dict.fromkeys(chain.from_iterable(declared.values()))
+            )
     lists = {"steps": config.steps, **config.settings}
     grid = _combinations({**lists, "steps_per_episode": config.steps_per_episode})
     reference_grid = _combinations(config.settings)
@@ -208,10 +210,12 @@ def _settings(config: ExperimentConfig) -> list[TrialSetting]:
         references += [
             _setting(place, agent, 0, values)
             for agent in _look_ahead_agents(config)
-            for values in dict.fromkeys(_subset(one, own[agent]) for one in reference_grid)
+            for values in dict.fromkeys(
+                _subset(combination, declared[agent]) for combination in reference_grid
+            )
         ]
         practices = dict.fromkeys(
-            (agent, _subset(values, (*own[agent], "steps", "steps_per_episode")))
+            (agent, _subset(values, (*declared[agent], "steps", "steps_per_episode")))
             for values in grid
             for agent in config.agents
             if learns(agent)
@@ -302,19 +306,19 @@ def _setting(
         **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **values
     )
     check_problem(agent, problem_of(training), training.settings)
-    own = {name: one.default for name, one in agent_settings(agent).items()}
-    defaults = {name: getattr(TrainingConfig, name) for name in GRID} | own
-    parts = [training.resolved_gait.name, place.observation, place.robot]
+    agent_defaults = {name: setting.default for name, setting in agent_settings(agent).items()}
+    defaults = {name: getattr(TrainingConfig, name) for name in GRID} | agent_defaults
+    words = [training.resolved_gait.name, place.observation, place.robot]
     if place.world != "flat":
-        parts.append(place.world)
-    parts += _non_default({name: getattr(training, name) for name in _GRID_FIELDS}, defaults)
-    parts.append(agent)
+        words.append(place.world)
+    words += _non_default({name: getattr(training, name) for name in _GRID_FIELDS}, defaults)
+    words.append(agent)
     if blocks:
-        parts.append(f"{blocks}x{training.steps}" if blocks > 1 else f"{training.steps}")
-    parts += _non_default({k: v for k, v in values.items() if k != "steps"}, defaults)
+        words.append(f"{blocks}x{training.steps}" if blocks > 1 else f"{training.steps}")
+    words += _non_default({k: v for k, v in values.items() if k != "steps"}, defaults)
     role: Role = "learner" if blocks else "reference"
     trial = TrialConfig(training=training, blocks=blocks)
-    key = "/".join(parts)
+    key = "/".join(words)
     return TrialSetting(key=key, role=role, robot=place.robot, trial=trial, world=place.world)
 
 
@@ -367,17 +371,17 @@ def _nominal(greedy: TrialSetting) -> TrialSetting:
 
 def _with_parameters(settings: Sequence[TrialSetting]) -> list[TrialSetting]:
     """Set the parameters of all settings: the same names in the same order."""
-    names = dict.fromkeys(name for one in settings for name in one.training.settings)
+    names = dict.fromkeys(name for setting in settings for name in setting.training.settings)
     completed = []
-    for one in settings:
-        training, practises = one.training, one.role != "reference"
+    for setting in settings:
+        training, practises = setting.training, setting.role != "reference"
         parameters: dict[str, Value] = {
-            "steps": one.practised_steps,
+            "steps": setting.practised_steps,
             **{name: training.settings.get(name) for name in names},
             "steps_per_episode": training.steps_per_episode if practises else None,
             **{name: getattr(training, name) for name in _GRID_FIELDS},
         }
-        completed.append(replace(one, parameters=SettingValues(parameters)))
+        completed.append(replace(setting, parameters=SettingValues(parameters)))
     return completed
 
 

@@ -71,12 +71,12 @@ class SettingResults(NamedTuple):
     @property
     def total_m(self) -> Points:
         """Each seed's distance over 50 steps, after the last block of practice [m]."""
-        return tuple(one.distances_m[-1] for one in self.succeeded if one.distances_m)
+        return tuple(result.distances_m[-1] for result in self.succeeded if result.distances_m)
 
     @property
     def finished_m(self) -> Points:
         """Each seed's distance at time-out, when the first lane has used its 50 steps [m]."""
-        distances = (one.finished_distance_m for one in self.succeeded)
+        distances = (result.finished_distance_m for result in self.succeeded)
         return tuple(metres for metres in distances if metres is not None)
 
 
@@ -96,14 +96,14 @@ def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[Set
             by_setting[setting][int(number)] = result
     grouped = [SettingResults(setting, by_setting[setting.key]) for setting in plan.settings]
     references = {
-        one.conditions: _reference(one)
-        for one in grouped
-        if one.setting.role == "reference"
-        and one.setting.training.agent == "greedy"
-        and one.setting.trial.plans_with is None
+        group.conditions: _reference(group)
+        for group in grouped
+        if group.setting.role == "reference"
+        and group.setting.training.agent == "greedy"
+        and group.setting.trial.plans_with is None
     }
     none = ReferenceDistance()
-    return [one._replace(reference=references.get(one.conditions, none)) for one in grouped]
+    return [group._replace(reference=references.get(group.conditions, none)) for group in grouped]
 
 
 def _reference(greedy: SettingResults) -> ReferenceDistance:
@@ -119,8 +119,8 @@ def _reference(greedy: SettingResults) -> ReferenceDistance:
     )
 
 
-def setting_fields(one: SettingResults) -> dict[str, Any]:
+def setting_fields(results: SettingResults) -> dict[str, Any]:
     """Return the fields that identify a setting in a summary."""
-    half_side_m = one.setting.training.grid_side_m / 2
-    blocks = one.setting.trial.blocks
-    return {**one.setting.fields, "blocks": blocks, "half_side_m": half_side_m}
+    half_side_m = results.setting.training.grid_side_m / 2
+    blocks = results.setting.trial.blocks
+    return {**results.setting.fields, "blocks": blocks, "half_side_m": half_side_m}

@@ -29,7 +29,7 @@ _CACHE_SIZE = 20_000
 _TRIMMED = 0.25
 """Share of the samples that an interquartile mean drops at each end."""
 _NORMAL_QUANTILE = 1.959963984540054
-"""Of the standard normal distribution, between `CONFIDENCE` of it: its 97.5 % quantile."""
+"""The 97.5 % quantile of the standard normal distribution, for `CONFIDENCE` of 95 %."""
 
 
 class Interval(NamedTuple):
@@ -170,7 +170,9 @@ def paired_interval(
         ]
         return statistic(iqm(np.concatenate(resampled, axis=axis), axis))
 
-    return interval([tuple(map(float, range(one.shape[1]))) for one in strata], of_seeds, seed)
+    return interval(
+        [tuple(map(float, range(numbers.shape[1]))) for numbers in strata], of_seeds, seed
+    )
 
 
 def resampled_iqms(points: FloatArray, seed: int) -> FloatArray:
@@ -246,7 +248,7 @@ def improvement(
 
     def mean_probability(*samples: FloatArray, axis: int = -1) -> FloatArray:
         pairs = zip(samples[: len(a)], samples[len(a) :], strict=True)
-        probabilities = [_probability(one, other, axis) for one, other in pairs]
+        probabilities = [_probability(pair_a, pair_b, axis) for pair_a, pair_b in pairs]
         return np.asarray(np.mean(probabilities, axis=0), dtype=np.float64)
 
     return interval((*a, *b), mean_probability, seed, confidence)

@@ -62,7 +62,7 @@ def summarise(
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
-    walked = [one for one in settings if one.setting.role != "timed"]
+    walked = [entry for entry in settings if entry.setting.role != "timed"]
     aside = Counter(key.rpartition("#")[0] for key in set_aside or {})
     preset = config.preset
     summary: dict[str, Any] = {
@@ -74,15 +74,17 @@ def summarise(
         "trials": _count_trials(plan, settings, set_aside or {}),
         "cost": None if cost is None else dict(cost),
         "parameters": list(plan.settings[0].parameters),
-        "settings": [_setting(one, config, aside[one.setting.key]) for one in walked],
+        "settings": [_setting(entry, config, aside[entry.setting.key]) for entry in walked],
         "pooled": _pooled(walked, config),
         "curves": [
-            _curve(one, config.seed)
-            for one in walked
-            if one.setting.role == "learner" and preset.measure == "blocks"
+            _curve(entry, config.seed)
+            for entry in walked
+            if entry.setting.role == "learner" and preset.measure == "blocks"
         ],
         "versus": [] if preset.has_worlds else _versus(walked, config.seed),
-        "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
+        "timed": [
+            _timed(entry) for entry in settings if entry.setting.role == "timed" and entry.succeeded
+        ],
         "worlds": compare_in_worlds(walked, config.seed, preset.reached_share)
         if preset.has_worlds
         else [],
@@ -99,21 +101,23 @@ def _plan(config: ExperimentConfig) -> Plan:
     return Plan(config)
 
 
-def _setting(one: SettingResults, config: ExperimentConfig, set_aside: int) -> dict[str, Any]:
-    cell = published(one.setting.gait, one.setting.training.agent, one.setting.practised_steps)
-    printed = compare_with_published(cell, one.total_m, one.finished_m)
-    elapsed = [result.elapsed_s for result in one.succeeded if result.elapsed_s is not None]
+def _setting(results: SettingResults, config: ExperimentConfig, set_aside: int) -> dict[str, Any]:
+    cell = published(
+        results.setting.gait, results.setting.training.agent, results.setting.practised_steps
+    )
+    printed = compare_with_published(cell, results.total_m, results.finished_m)
+    elapsed = [result.elapsed_s for result in results.succeeded if result.elapsed_s is not None]
     return {
-        "key": one.setting.key,
-        "role": one.setting.role,
-        **setting_fields(one),
-        "n": len(one.total_m),
-        "failed": len(one.results) - len(one.succeeded) + set_aside,
-        "total": summarise_distances(one.total_m, config.seed),
-        "finished": summarise_distances(one.finished_m, config.seed),
-        "best_known_m": one.reference.best_known_m,
-        **measure_against_references([one], config.seed),
-        "elapsed_s": elapsed[0] if elapsed and one.setting.role == "reference" else None,
+        "key": results.setting.key,
+        "role": results.setting.role,
+        **setting_fields(results),
+        "n": len(results.total_m),
+        "failed": len(results.results) - len(results.succeeded) + set_aside,
+        "total": summarise_distances(results.total_m, config.seed),
+        "finished": summarise_distances(results.finished_m, config.seed),
+        "best_known_m": results.reference.best_known_m,
+        **measure_against_references([results], config.seed),
+        "elapsed_s": elapsed[0] if elapsed and results.setting.role == "reference" else None,
         "published": printed if config.preset.is_published else None,
     }
 
@@ -125,46 +129,48 @@ def _pooled(settings: Sequence[SettingResults], config: ExperimentConfig) -> lis
     since they have one result per gait, and a gait is not a seed.
     """
     entries = []
-    for group in _group_by_gait(one for one in settings if _is_compared(one, config)):
+    for group in _group_by_gait(results for results in settings if _is_compared(results, config)):
         shared = {k: v for k, v in setting_fields(group[0]).items() if k != "gait"}
-        gaits = [one.setting.gait for one in group]
-        n = sum(len(one.total_m) for one in group)
+        gaits = [results.setting.gait for results in group]
+        n = sum(len(results.total_m) for results in group)
         measured = measure_against_references(group, config.seed)
         if group[0].setting.role == "reference":
             measured = {k: v if k in _DISTANCE_SHARES else None for k, v in measured.items()}
-        known = best_known_relative(group)
-        entries.append({**shared, "gaits": gaits, "n": n, "best_known_relative": known, **measured})
+        best_known = best_known_relative(group)
+        entries.append(
+            {**shared, "gaits": gaits, "n": n, "best_known_relative": best_known, **measured}
+        )
     return entries
 
 
-def _is_compared(one: SettingResults, config: ExperimentConfig) -> bool:
-    agent = one.setting.training.agent
-    return one.setting.role == "learner" or agent not in config.preset.references
+def _is_compared(results: SettingResults, config: ExperimentConfig) -> bool:
+    agent = results.setting.training.agent
+    return results.setting.role == "learner" or agent not in config.preset.references
 
 
 def _group_by_gait(settings: Iterable[SettingResults]) -> list[list[SettingResults]]:
     """Group settings that differ only in the gait."""
     groups: dict[Any, list[SettingResults]] = {}
-    for one in settings:
-        alike = (one.conditions[1:], one.setting.training.agent, one.parameters)
-        groups.setdefault(alike, []).append(one)
+    for results in settings:
+        alike = (results.conditions[1:], results.setting.training.agent, results.parameters)
+        groups.setdefault(alike, []).append(results)
     return list(groups.values())
 
 
-def _curve(one: SettingResults, seed: int) -> dict[str, Any]:
+def _curve(results: SettingResults, seed: int) -> dict[str, Any]:
     """Return the learning curve: distance against steps of practice, with its references."""
-    blocks = list(zip(*(result.distances_m for result in one.succeeded), strict=True))
-    greedy_m = one.reference.total_m
+    blocks = list(zip(*(result.distances_m for result in results.succeeded), strict=True))
+    greedy_m = results.reference.total_m
     limit = None if greedy_m is None else WALKER_SHARE * greedy_m
     return {
-        "key": one.setting.key,
-        **setting_fields(one),
-        "steps": list(one.setting.walks_after[: len(blocks)]),
+        "key": results.setting.key,
+        **setting_fields(results),
+        "steps": list(results.setting.walks_after[: len(blocks)]),
         **curve_entry(blocks, seed),
         "walkers": [None if limit is None else share_at_least(p, limit).value for p in blocks],
         "points_m": [list(points) for points in blocks],
         "greedy_m": greedy_m,
-        "best_known_m": one.reference.best_known_m,
+        "best_known_m": results.reference.best_known_m,
     }
 
 
@@ -174,17 +180,19 @@ def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any
     Agents are compared under the same conditions with the same values of what both of them have.
     """
     groups: dict[Any, list[SettingResults]] = {}
-    for one in settings:
-        if one.setting.role == "learner" and one.total_m:
-            groups.setdefault((one.conditions, one.setting.trial.blocks), []).append(one)
+    for results in settings:
+        if results.setting.role == "learner" and results.total_m:
+            groups.setdefault((results.conditions, results.setting.trial.blocks), []).append(
+                results
+            )
     entries = []
     for a, b in (pair for group in groups.values() for pair in combinations(group, 2)):
         if not _are_comparable(a, b):
             continue
         probability = improvement((a.total_m,), (b.total_m,), seed)
-        theirs = setting_fields(b)
-        # Of a setting that one of them does not have, the other's value.
-        shared = {k: theirs[k] if v is None else v for k, v in setting_fields(a).items()}
+        fields_b = setting_fields(b)
+        # Where one agent lacks a setting, take the value of the other.
+        shared = {k: fields_b[k] if v is None else v for k, v in setting_fields(a).items()}
         del shared["agent"]
         agents = {"a": a.setting.training.agent, "b": b.setting.training.agent}
         fewest = min(len(a.total_m), len(b.total_m))
@@ -206,9 +214,9 @@ def _are_comparable(a: SettingResults, b: SettingResults) -> bool:
     return all(x == y for x, y in pairs if x is not None and y is not None)
 
 
-def _timed(one: SettingResults) -> dict[str, Any]:
-    lanes = [dict(lane) for lane in one.succeeded[0].wall or ()]
-    fields = setting_fields(one)
+def _timed(results: SettingResults) -> dict[str, Any]:
+    lanes = [dict(lane) for lane in results.succeeded[0].wall or ()]
+    fields = setting_fields(results)
     return {**{k: fields[k] for k in ("gait", "observation", "robot")}, "lanes": lanes}
 
 
@@ -216,9 +224,9 @@ def _count_trials(
     plan: Plan, settings: Sequence[SettingResults], set_aside: Mapping[str, str]
 ) -> dict[str, Any]:
     failed = {
-        f"{one.setting.key}#{number}": result.failure
-        for one in settings
-        for number, result in sorted(one.results.items())
+        f"{results.setting.key}#{number}": result.failure
+        for results in settings
+        for number, result in sorted(results.results.items())
         if result.failure
     }
 
@@ -229,7 +237,7 @@ def _count_trials(
         ]
 
     return {
-        "done": sum(len(one.results) for one in settings),
+        "done": sum(len(setting.results) for setting in settings),
         "total": plan.total,
         "failed": len(failed) + len(set_aside),
         "failures": reasons(failed),

@@ -196,15 +196,15 @@ def _race(
 ) -> list[LaneRecording]:
     training = config.training
     walk = vars(training.walk())
-    own = LaneConfig(
+    own_lane = LaneConfig(
         agent=training.agent,
         observation=training.observation,
         plans_with=config.plans_with,
         keep_learning=config.keep_learning,
         settings=training.settings if table is None else SettingValues(),
     )
-    rivals = (LaneConfig(agent=one, observation=training.observation) for one in config.rivals)
-    race = RaceConfig(**walk, lanes=(own, *rivals), seed=training.seed)
+    rivals = (LaneConfig(agent=rival, observation=training.observation) for rival in config.rivals)
+    race = RaceConfig(**walk, lanes=(own_lane, *rivals), seed=training.seed)
     walkers = build_walkers(race, [table, *(None for _ in config.rivals)], threads=1)
     for walker in walkers:
         if walker.expand is not None:

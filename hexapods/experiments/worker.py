@@ -130,15 +130,22 @@ def versions() -> dict[str, str]:
     }
 
 
-def difference(here: Mapping[str, str], there: Mapping[str, str]) -> str | None:
+def difference(versions_here: Mapping[str, str], versions_there: Mapping[str, str]) -> str | None:
     """Describe how the versions of two processes differ; None if results are comparable.
 
     Python's patch version is ignored.
     """
-    names = [name for name in here if _comparable(here, name) != _comparable(there, name)]
+    names = [
+        name
+        for name in versions_here
+        if _comparable(versions_here, name) != _comparable(versions_there, name)
+    ]
     if not names:
         return None
-    return ", ".join(f"{name} {there.get(name, 'none')} instead of {here[name]}" for name in names)
+    return ", ".join(
+        f"{name} {versions_there.get(name, 'none')} instead of {versions_here[name]}"
+        for name in names
+    )
 
 
 def _comparable(installed: Mapping[str, str], name: str) -> str | None:

@@ -36,43 +36,48 @@ def compare_in_worlds(
         following steps earned (`earned`). Distances of references are interquartile means.
     """
     references: dict[Any, dict[str, Any]] = {}
-    for one in settings:
-        known = references.setdefault(one.conditions, {"best_known_m": one.best_known_m})
-        if one.setting.role == "reference" and one.total_m:
-            agent, nominal = one.setting.training.agent, one.setting.trial.plans_with is not None
+    for results in settings:
+        reference = references.setdefault(
+            results.conditions, {"best_known_m": results.best_known_m}
+        )
+        if results.setting.role == "reference" and results.total_m:
+            agent, nominal = (
+                results.setting.training.agent,
+                results.setting.trial.plans_with is not None,
+            )
             name = f"{agent.replace('-', '_')}{'_nominal' if nominal else ''}_m"
-            known[name] = iqm_interval((one.total_m,), seed).value
+            reference[name] = iqm_interval((results.total_m,), seed).value
     return [
-        _entry(one, references[one.conditions], seed, reached_share)
-        for one in settings
-        if one.total_m
+        _entry(results, references[results.conditions], seed, reached_share)
+        for results in settings
+        if results.total_m
     ]
 
 
-def _plans_with(one: SettingResults) -> PlanningModel | None:
-    trial = one.setting.trial
+def _plans_with(results: SettingResults) -> PlanningModel | None:
+    trial = results.setting.trial
     lane = LaneConfig(agent=trial.training.agent, plans_with=trial.plans_with)
     return plans_with(lane, trial.training)
 
 
 def _entry(
-    one: SettingResults, known: Mapping[str, Any], seed: int, share: float
+    results: SettingResults, reference: Mapping[str, Any], seed: int, share: float
 ) -> dict[str, Any]:
-    greedy_m, best_m = known.get("greedy_m"), known["best_known_m"]
-    practises = one.setting.role == "learner"
+    greedy_m, best_m = reference.get("greedy_m"), reference["best_known_m"]
+    practises = results.setting.role == "learner"
     return {
-        "key": one.setting.key,
-        "role": one.setting.role,
-        **setting_fields(one),
-        "plans_with": _plans_with(one),
-        "n": len(one.total_m),
+        "key": results.setting.key,
+        "role": results.setting.role,
+        **setting_fields(results),
+        "plans_with": _plans_with(results),
+        "n": len(results.total_m),
         "greedy_m": greedy_m,
-        "greedy_nominal_m": known.get("greedy_nominal_m"),
+        "greedy_nominal_m": reference.get("greedy_nominal_m"),
         "best_known_m": best_m,
-        "distance": iqm_entry([one.total_m], seed),
-        "of_greedy": _share_of(one.total_m, greedy_m, seed),
-        "of_best_known": _share_of(one.total_m, best_m, seed),
-        **(_practice(one, greedy_m, best_m, seed, share) if practises else _NO_PRACTICE),
+        "distance": iqm_entry([results.total_m], seed),
+        "of_greedy": _share_of(results.total_m, greedy_m, seed),
+        "of_best_known": _share_of(results.total_m, best_m, seed),
+        **(_practice(results, greedy_m, best_m, seed, share) if practises else _NO_PRACTICE),
     }
 
 
@@ -86,10 +91,10 @@ _NO_PRACTICE: Mapping[str, Any] = {
 
 
 def _practice(
-    one: SettingResults, greedy_m: float | None, best_m: float | None, seed: int, share: float
+    results: SettingResults, greedy_m: float | None, best_m: float | None, seed: int, share: float
 ) -> dict[str, Any]:
     """Return what is measured along the practice of a learner."""
-    trial, walks = one.setting.trial, one.succeeded
+    trial, walks = results.setting.trial, results.succeeded
     is_recovery = trial.earning_steps > 0
     begin = trial.evaluations[0] if is_recovery else 0
     steps = [step - begin for step in trial.evaluations]
@@ -135,7 +140,7 @@ def _until(
     goal_m = share * reference_m
     seeds = [steps_until(steps, walk, goal_m) for walk in zip(*distances, strict=True)]
     middle = median(seeds)
-    reached = share_at_least([-one for one in seeds], -steps[-1])
+    reached = share_at_least([-until for until in seeds], -steps[-1])
     return {
         "of": share,
         "median_steps": None if math.isinf(middle) else middle,

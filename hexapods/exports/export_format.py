@@ -28,7 +28,7 @@ class EncodedReplay(NamedTuple):
     """The encoded frames of a run; `hexapods.drawing.replay_encoding` has their form."""
 
     plan: Mapping[str, Any]
-    """Of the replay: see `hexapods.shows.replay.Replay.plan`."""
+    """The replay's plan: see `hexapods.shows.replay.Replay.plan`."""
     scene: Callable[[], bytes]
     segment: Callable[[int, int], bytes]
     """Returns a segment, by its level and number."""
@@ -58,7 +58,7 @@ def _write_here(write: Callable[[Path], None], name: str) -> bytes:
 
 @dataclass(frozen=True)
 class Execution:
-    """Where and how far an export is computed; by default here, without a server's limits.
+    """Limits of an export, and the process that writes it; by default this one without limits.
 
     Attributes:
         max_frames: maximum number of recorded frames, or pictures; None for that of the format.

@@ -27,7 +27,7 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class LaneOptions(ExportOptions):
-    """Which lanes of a race an export has."""
+    """Option of an export: the lanes of a race that it contains."""
 
     lane: Annotated[
         int | None, Ge(0), Setting(title="Lane", help="Of a race, from 0 on; all if absent.")
@@ -36,7 +36,7 @@ class LaneOptions(ExportOptions):
 
 @dataclass(frozen=True)
 class ClockOptions(ExportOptions):
-    """By which clock a race is timed."""
+    """Option of an export: the clock by which a race is timed."""
 
     clock: _Clock = "paper"
 

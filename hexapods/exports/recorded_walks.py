@@ -40,7 +40,7 @@ class ExportedLane(RecordedSteps):
         With the clock `free`, and of a training, that is robot time.
         """
         if not isinstance(self.steps, LaneSteps):
-            return np.array([(one.step - 1) * step_s for one in self.steps])
+            return np.array([(step.step - 1) * step_s for step in self.steps])
         if clock == "free":
             return np.arange(len(self.steps), dtype=float) * step_s
         return Timetable.of(self.steps, clock).thought
@@ -66,7 +66,7 @@ class RecordedWalks:
     @classmethod
     def of_race(cls, config: RaceConfig, lanes: Iterable[LaneRecording]) -> Self:
         """Return what is recorded of a race."""
-        return cls(config, [ExportedLane(one.rest_qpos, one.steps, one.agent) for one in lanes])
+        return cls(config, [ExportedLane(lane.rest_qpos, lane.steps, lane.agent) for lane in lanes])
 
     @classmethod
     def of_training(cls, config: TrainingConfig, recording: PracticeRecording) -> Self:

@@ -100,4 +100,4 @@ EXPORTS: dict[str, ExportFormat] = {
         max_served_frames=200_000,
     ),
 }
-"""By name, which is part of the route's path, and the command."""
+"""Export formats by name, which is the command, and a part of the route's path."""

@@ -88,7 +88,7 @@ def _segments_that_fit(
         numbers, size = _recorded_segments(plan, level), 0
         if len(numbers) > MAX_SEGMENTS:
             continue
-        # Of a level that is far too large, only a few are encoded.
+        # If a level is far too large, encode a few of its segments only.
         few = numbers[:: max(1, len(numbers) // _SAMPLED)]
         size = sum(size_of(level, number) for number in few)  # whole numbers
         if size * len(numbers) > 2 * room * len(few):
@@ -148,8 +148,8 @@ def _inlined(entry: str) -> str:
 
     def add(path: str) -> None:
         source = (assets.static_dir() / path).read_text("utf-8")
-        for found in _IMPORT.finditer(source):
-            target = (assets.static_dir() / path).parent / found["path"]
+        for statement in _IMPORT.finditer(source):
+            target = (assets.static_dir() / path).parent / statement["path"]
             imported = target.resolve().relative_to(assets.static_dir().resolve()).as_posix()
             if imported not in texts:
                 add(imported)

@@ -23,7 +23,7 @@ def robot_mjcf(robot: Robot) -> str:
     height_m = robot.body_height_m + robot.foot_radius_m
     qpos = np.concatenate(([0, 0, height_m, 1, 0, 0, 0], standing))
     spec.add_key(name=HOME_KEY, qpos=qpos, ctrl=standing)
-    # It is written as it was compiled.
+    # MuJoCo writes the model as it was compiled.
     spec.compile()
     return str(spec.to_xml())
 

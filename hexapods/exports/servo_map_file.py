@@ -24,7 +24,7 @@ from hexapods.exports.servo_map import (
 MAX_MAP_BYTES = 64 * 1024
 
 _MAX_DIGITS = 100
-"""Of a number: with colons it is one to the base of 60, and takes a time by its length's square."""
+"""Most digits of a number: YAML reads colons as base 60, in time quadratic in the length."""
 _FRAME_US = 20_000.0
 """Servos get a pulse every 20 ms, so none is longer."""
 _ZERO_US = (-2 * _FRAME_US, 2 * _FRAME_US)

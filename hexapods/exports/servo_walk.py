@@ -24,7 +24,7 @@ MAX_FRAMES = 200_000
 
 
 class ServoSpeed(NamedTuple):
-    """How fast a servo would have to turn."""
+    """Highest angular speed that a walk demands of a servo, and the speed that it can reach."""
 
     servo: Servo
     needed_deg_s: float
@@ -36,7 +36,7 @@ class ServoSpeed(NamedTuple):
 
     @property
     def times_slower(self) -> float:
-        """How many times as long the walk must take for the servo to follow; at most 1 if not."""
+        """Factor by which the walk must be slowed for the servo to follow; at most 1 if not."""
         return 0.0 if self.usable_deg_s is None else self.needed_deg_s / self.usable_deg_s
 
 
@@ -77,7 +77,7 @@ class ServoWalk:
 
     @property
     def slow_enough(self) -> float:
-        """How many times as long as recorded it must take, so that all servos follow; from 1 on."""
+        """Least factor by which it must be slowed so that all servos follow; from 1 on."""
         return times_slower(self.speeds)
 
 
@@ -146,7 +146,7 @@ def _frames(duration_s: float) -> int:
 def _first_without_gap(lane: ExportedLane) -> int:
     """Return the index of the step from which on none is missing."""
     first = len(lane.steps) - 1
-    # Of a race there is no gap, and its steps may be many, and in files.
+    # The steps of a race have no gap; they may be many, and in files.
     if lane.steps[0].step == lane.steps[first].step - first:
         return 0
     while lane.steps[first - 1].step == lane.steps[first].step - 1:
@@ -165,7 +165,7 @@ def _recorded(lane: ExportedLane, first: int, step_s: float) -> tuple[FloatArray
 
 
 def _speeds(servo_map: ServoMap, times_s: FloatArray, angles: FloatArray) -> tuple[ServoSpeed, ...]:
-    # Of the recorded frames, between which sampling interpolates: no sampled one is faster.
+    # Sampling interpolates between the recorded frames, so no sampled speed is higher.
     turned = np.rad2deg(np.abs(np.diff(angles, axis=0))) / np.diff(times_s)[:, None]
     fastest = turned.argmax(axis=0)
     share = servo_map.speed_share

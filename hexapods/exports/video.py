@@ -185,11 +185,11 @@ class _Track:
 
     @property
     def recorded_s(self) -> float:
-        """How long motions are recorded [s]."""
+        """Total duration of the recorded motions [s]."""
         return float((self._ends_s - self._starts_s).sum())
 
     def gap_s(self, time_s: float) -> float:
-        """Return how long nothing is recorded from a moment on, where steps are missing."""
+        """Return the duration of the gap in the recording from a moment on [s]; 0 if none."""
         index = bisect_right(self._starts_s, time_s) - 1
         if index < 0 or index + 1 >= len(self._starts_s) or time_s <= self._ends_s[index] + 1e-6:
             return 0.0

@@ -1,4 +1,4 @@
-"""Makes a `RobotModel` of a compiled file: every part is found in turn, and put together."""
+"""Build a `RobotModel` from a compiled file: find its parts, and assemble them."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -48,10 +48,10 @@ Names = list[tuple[str, ...]]
 
 @dataclass(frozen=True)
 class FileOrigin:
-    """Where a robot comes from.
+    """Origin of an imported robot: its name, and the file that it was read from.
 
     Attributes:
-        name: a name for it.
+        name: name of the robot.
         file_format: format of the file.
         file: path in the zip; None if it was given alone.
     """
@@ -62,7 +62,7 @@ class FileOrigin:
 
 
 def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes) -> ImportedRobot:
-    """Make a robot of a compiled file.
+    """Build the robot from a compiled file.
 
     Raises:
         InvalidInput: if it is no robot with legs, or a choice is not possible.

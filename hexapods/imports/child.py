@@ -42,7 +42,7 @@ _logger = logging.getLogger(__name__)
 
 
 class NotRead(HexapodError):
-    """No process could read the file, of which nothing is known then: it may be good."""
+    """No process could be started that reads the file; the file itself may be valid."""
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ def _cut(text: str) -> str:
 
 
 def _answer_once(pipe: Connection) -> None:
-    """Be the child: read one file, and answer."""
+    """Read one file and send the answer: the function that the child process runs."""
     # Here, so that the parent imports no parser of foreign files.
     from hexapods.imports.compiling import silence_mujoco  # noqa: PLC0415
     from hexapods.imports.reading import read_in_this_process  # noqa: PLC0415
@@ -225,14 +225,14 @@ def _answer_once(pipe: Connection) -> None:
         def read() -> dict[str, Any]:
             return {"robot": to_json(read_in_this_process(data, head["file_name"], choices))}
 
-        answer = json.dumps(_told(read, head["memory_bytes"])).encode()
+        answer = json.dumps(_robot_or_error(read, head["memory_bytes"])).encode()
     except MemoryError:
         answer = json.dumps({"error": _too_much_memory(head["memory_bytes"])}).encode()
     pipe.send_bytes(answer)
 
 
-def _told(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, Any]:
-    """Return what a file gives, or a sentence on why it gives nothing."""
+def _robot_or_error(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, Any]:
+    """Return the robot that was read, or the error as a sentence, in plain types."""
     try:
         return read()
     except DamagedFile as error:
@@ -251,7 +251,7 @@ def _told(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, An
 
 
 def _enter_empty_folder() -> None:
-    """Forget the environment, and work in a folder that is empty, and deleted already.
+    """Clear the environment variables, and change to an empty folder that is already deleted.
 
     No file can be made in it. On Windows, where it could not be deleted, it is the folder of
     temporary files.

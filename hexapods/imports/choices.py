@@ -17,7 +17,7 @@ Angle = Annotated[float, Ge(-7.0), Le(7.0)]
 
 @dataclass(frozen=True)
 class Choices(Record):
-    """Decisions of a person about a robot from a file; fields that are null are found out.
+    """Decisions of a person about a robot from a file; null fields are inferred from the file.
 
     Attributes:
         file: of several robots in a zip the path of the one that is meant.
@@ -46,4 +46,4 @@ class Choices(Record):
 
 
 AS_FOUND = Choices()
-"""All is found out."""
+"""Infer everything from the file."""

@@ -1,4 +1,4 @@
-"""Has MuJoCo turn a cleaned document into numbers, with repairs where it would refuse it."""
+"""Compile a cleaned document with MuJoCo, and repair what its compiler refuses."""
 
 import re
 from collections.abc import Collection, Mapping
@@ -105,7 +105,7 @@ def _compile(spec: mujoco.MjSpec, document: Document, notes: Notes) -> mujoco.Mj
 
 
 def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
-    """Change what MuJoCo complains of; False if nothing is known against it."""
+    """Repair the cause of MuJoCo's error in the model; False if no repair is known."""
     if "mass and inertia of moving bodies" in problem and not spec.compiler.boundmass:
         # Which bodies these are, and what they get, is told where masses are guessed.
         spec.compiler.boundmass, spec.compiler.boundinertia = LEAST_KG, _LEAST_INERTIA

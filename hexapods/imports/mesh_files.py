@@ -68,7 +68,7 @@ class MeshFiles:
         return self._names[path, scale]
 
     def tell(self) -> None:
-        """Tell which meshes are missing or cannot be read."""
+        """Add notes about meshes that are missing or cannot be read."""
         for names, what in (
             (self._missing, "missing from the upload (put them into a zip with the document)"),
             (self._unreadable, f"left out, since only {', '.join(FORMATS)} are read"),

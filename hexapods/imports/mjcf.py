@@ -1,4 +1,4 @@
-"""Keeps of an MJCF document what describes a body, and leaves out or refuses the rest.
+"""Clean an MJCF document: keep what describes a body, and drop or refuse all other elements.
 
 The elements and attributes that stay are listed: what MuJoCo adds in another version, or a plugin,
 gets through only if it is added here.
@@ -82,7 +82,7 @@ _TEXTS = _words(
 
 
 def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
-    """Keep of a document what describes a body; meshes get their names in `meshes`.
+    """Remove what does not describe a body from an MJCF document; name its meshes in `meshes`.
 
     Raises:
         DamagedFile: if it has what cannot be read here, or too much.

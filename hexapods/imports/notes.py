@@ -32,11 +32,11 @@ class Notes:
         self.repairs: list[str] = []
 
     def guess(self, sentence: str) -> None:
-        """Tell of a guess."""
+        """Add a note about a guess."""
         _add(self.guesses, sentence)
 
     def repair(self, sentence: str) -> None:
-        """Tell of a repair."""
+        """Add a note about a repair."""
         _add(self.repairs, sentence)
 
 

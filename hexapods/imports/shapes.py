@@ -29,7 +29,13 @@ class GroundShape:
     rotation: FloatArray
 
     def lowest_m(self, turn: FloatArray, origin: FloatArray, moved: FloatArray) -> float:
-        """Return its lowest height after a motion of its link: rotation, about a point, and to."""
+        """Return the height of its lowest point after a motion of its link.
+
+        Args:
+            turn: rotation about `origin`, (3, 3).
+            origin: point that the rotation keeps in place before the motion, (3,) [m].
+            moved: place of that point after the motion, (3,) [m].
+        """
         center = moved + turn @ (self.at_m - origin)
         along = np.abs((turn @ self.rotation)[2])
         x, y, _z = self.size_m

@@ -16,7 +16,7 @@ from hexapods.imports.choices import Choices
 from hexapods.imports.notes import Notes, listed, quoted
 
 _REACH_SHARE, _LIFT_SHARE = 0.08, 0.12
-"""How far each foot must reach from home, to each side and upward, as shares of its length."""
+"""Least reach of each foot from home, to each side and upward, as shares of its leg's length."""
 _CLEARANCE_SHARE, _LEVEL_SHARE = 0.04, 0.15
 """Least height of the torso over the ground and largest unevenness of the feet, by leg length."""
 _SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
@@ -30,12 +30,12 @@ _SPRAWLED = ((0.45, 0.6), (0.55, 0.6), (0.35, 0.7), (0.6, 0.7), (0.3, 0.6))
 _UPRIGHT = (0.65, 0.72, 0.58, 0.5, 0.8)
 """Postures of other legs: how far the foot is below its mount."""
 _ASTRIDE = 1.15
-"""How far such feet stand beside their mounts, relative to the hips' offsets: so none toppled."""
+"""Lateral distance of such feet from their mounts, by the hips' offsets; at this none toppled."""
 _POSTURES = len(_UPRIGHT)
 _LEAST_UNDER = 0.15
-"""How far a foot is at least below the torso, of the leg's length."""
+"""Least depth of a foot below the torso, as a share of the leg's length."""
 _FOLLOWING_JOINTS = 3
-"""With so many a leg follows a grid."""
+"""Number of joints from which on a leg can follow a grid."""
 Angles = list[FloatArray]
 """Joint angles of each leg [rad], each (joints,)."""
 
@@ -220,7 +220,9 @@ def search(robot: RobotWithLegs) -> Angles:
     for lower in range(_POSTURES):
         angles = _posture(robot, lower)
         pairs = _pairs(robot, angles)
-        unreached = sum(_unreached(chain, one) for chain, one in pairs)  # whole numbers
+        unreached = sum(
+            _unreached(chain, pair_angles) for chain, pair_angles in pairs
+        )  # whole numbers
         if unreached < fewest:
             fewest, stance = unreached, angles
         if not unreached:

@@ -152,8 +152,8 @@ class Upload:
         def same(path: str) -> int:
             pairs = zip(reversed(path.split("/")), reversed(parts), strict=False)
             count = 0
-            for here, there in pairs:
-                if here != there:
+            for folder_a, folder_b in pairs:
+                if folder_a != folder_b:
                     break
                 count += 1
             return count

@@ -1,4 +1,4 @@
-"""Keeps of a URDF document what describes a body, and checks that its links are one tree."""
+"""Clean a URDF document: keep what describes a body, and check that its links form one tree."""
 
 from collections.abc import Sequence
 
@@ -56,7 +56,7 @@ def check_expanded(root: Element) -> None:
 
 
 def clean_urdf(root: Element, meshes: MeshFiles) -> None:
-    """Keep of a document what describes a body; meshes get their names in `meshes`.
+    """Remove what does not describe a body from a URDF document; name its meshes in `meshes`.
 
     Raises:
         DamagedFile: if its links are no tree, or it has too much.

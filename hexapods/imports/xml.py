@@ -65,7 +65,7 @@ class Element:
 
     @property
     def place(self) -> str:
-        """Where it is, for messages: `<geom> "foot" in line 12`."""
+        """Its tag, name and line, for messages: `<geom> "foot" in line 12`."""
         name = self.attributes.get("name", "")
         return f"<{quoted(self.tag)}>{f' {quoted(name)}' if name else ''} in line {self.line}"
 

@@ -112,13 +112,13 @@ def _keep(
     simulator: Simulator[Any], ends: Sequence[Any], values: FloatArray, width: int
 ) -> list[Any]:
     """Return the states of the highest values, of those with the same planned cells only a few."""
-    kept: list[Any] = []
+    best: list[Any] = []
     taken: dict[Cells, int] = {}
     for index in np.argsort(-values, kind="stable").tolist():
         cells = tuple(simulator.grid.nearest(x, y) for x, y in ends[index].feet.offsets_m)
         if taken.get(cells, 0) < SAME_CELLS:
             taken[cells] = taken.get(cells, 0) + 1
-            kept.append(ends[index])
-        if len(kept) == width:
+            best.append(ends[index])
+        if len(best) == width:
             break
-    return kept
+    return best

@@ -62,7 +62,9 @@ def best_known_in_race_m(race: RaceConfig) -> float | None:
     world = race.world
     physics = _physical(world.as_of(0), race.robot)
     later = (world.as_of(step) for step in world.change_steps if step < race.steps)
-    changes = world.all_of(Push) or any(_physical(one, race.robot) != physics for one in later)
+    changes = world.all_of(Push) or any(
+        _physical(conditions, race.robot) != physics for conditions in later
+    )
     return None if changes or race.steps != RACE_STEPS else best_known_m(race)
 
 

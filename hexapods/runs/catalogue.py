@@ -1,4 +1,4 @@
-"""What people read of names and settings: titles, descriptions and limits, from the registries.
+"""Titles, descriptions and limits of names and settings, collected from the registries.
 
 The dashboard's options and the report of an experiment are made of these entries, all of plain
 types.
@@ -57,7 +57,7 @@ FIELD_TITLES = {
     "tags": "Tags",
     "notes": "Notes",
 }
-"""Of the fields of all forms that are no declared settings."""
+"""Titles of the form fields that are no declared settings, by name."""
 # The limit of a race with the maximum number of lanes.
 _LANE_STEPS = Annotated[
     int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), declared_fields(RaceConfig)["steps"].about

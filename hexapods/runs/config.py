@@ -250,7 +250,7 @@ class TrainingConfig(WalkingProblem):
         check_observation(self.observation)
 
 
-TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
+TRAINING_FIELDS = frozenset(field.name for field in fields(TrainingConfig))
 """Names of the fields of a training; all other names are settings of its agent."""
 
 

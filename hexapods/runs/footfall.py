@@ -73,9 +73,11 @@ def stance_intervals(times_s: FloatArray, clearance_m: FloatArray) -> list[Inter
     changes = np.flatnonzero(stands[1:] != stands[:-1])
     edges = []
     for before in changes.tolist():
-        share, both = 0.0, above[before : before + 2]
-        if np.isfinite(both).all():  # else a leg is lost, or is there again, with the new step
-            share = both[0] / (both[0] - both[1])
+        share, clearances = 0.0, above[before : before + 2]
+        if np.isfinite(
+            clearances
+        ).all():  # else a leg is lost, or is there again, with the new step
+            share = clearances[0] / (clearances[0] - clearances[1])
         edges.append(float(times_s[before] + share * (times_s[before + 1] - times_s[before])))
     if stands[0]:
         edges.insert(0, float(times_s[0]))

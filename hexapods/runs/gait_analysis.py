@@ -40,7 +40,7 @@ CYCLE_REPEATS = 3
 """A sequence of steps is a cycle if it ends the walk so many times in a row."""
 MAX_CYCLE_STEPS = 200
 MAX_LOOKED_BACK = 10_000
-"""So many steps from the end the repetitions of a cycle are counted."""
+"""Number of last steps in which the repetitions of a cycle are counted."""
 
 
 Share = Annotated[float, Ge(0), Le(1)]
@@ -335,7 +335,7 @@ def _cycle(walk: RecordedWalk) -> Cycle | None:
         return None
     for period in range(1, min(MAX_CYCLE_STEPS, len(choices) // CYCLE_REPEATS) + 1):
         earlier = zip(choices, choices[period:], strict=False)
-        repeated = sum(1 for _ in takewhile(lambda both: both[0] == both[1], earlier))
+        repeated = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], earlier))
         if repeated >= (CYCLE_REPEATS - 1) * period:
             return _cycle_of(walk, period, len(walk.steps) - repeated - period)
     return None

@@ -1,4 +1,4 @@
-"""What each step of a walk brought, beside the best that any move would have brought there."""
+"""Compare the gain of each step of a recorded walk with that of the best legal move."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple

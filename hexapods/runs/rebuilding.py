@@ -24,7 +24,7 @@ from hexapods.runs.transition_log import Logged
 
 
 class NotRebuilt(HexapodError):
-    """A learner cannot be rebuilt: it did not do what is in the log."""
+    """A learner cannot be rebuilt: its actions differ from those in the log."""
 
 
 class LoggedSensors:

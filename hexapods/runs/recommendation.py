@@ -1,4 +1,4 @@
-"""Which learner to begin with for a robot in a gait, by what is known before it walks."""
+"""Recommend a learner for a robot in a gait by its support margin, before it walks."""
 
 from typing import NamedTuple
 

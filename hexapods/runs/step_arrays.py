@@ -113,8 +113,8 @@ class StepArrays:
         reward, distance, transitions, decision = arrays["scalars"][index].tolist()
         action_values = None
         if "values" in arrays:
-            both = (arrays[name][index].astype(float) for name in ("values", "visits"))
-            action_values = ActionValues(*both)
+            values_and_visits = (arrays[name][index].astype(float) for name in ("values", "visits"))
+            action_values = ActionValues(*values_and_visits)
         frames = slice(self._starts[index], self._starts[index + 1])
         motion = (arrays[name][frames] if name in arrays else None for name in Motion._fields)
         return LaneStep(

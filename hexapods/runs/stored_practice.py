@@ -100,8 +100,8 @@ def _steps(arrays: Arrays) -> list[StepTaken]:
 def _action_values(arrays: Arrays) -> list[ActionValues]:
     if "values" not in arrays:
         return []
-    both = zip(arrays["values"].astype(float), arrays["visits"].astype(float), strict=True)
-    return [ActionValues(values, visits) for values, visits in both]
+    tables = zip(arrays["values"].astype(float), arrays["visits"].astype(float), strict=True)
+    return [ActionValues(values, visits) for values, visits in tables]
 
 
 def _evaluations(arrays: Arrays) -> list[Evaluated]:

@@ -63,10 +63,13 @@ class Transitions(NamedTuple):
         """
         count = len(self.rewards_m)
         shapes = [(count + 1, groups), (count + 1, groups), (count, 2), (count,)]
-        parts = (self.observed, self.measured, self.actions, self.rewards_m)
-        if [part.shape for part in parts] != shapes:
+        arrays = (self.observed, self.measured, self.actions, self.rewards_m)
+        if [array.shape for array in arrays] != shapes:
             raise ValueError("its steps do not fit together")
-        if any(part.dtype != np.uint8 for part in parts[:3]) or self.rewards_m.dtype != np.float64:
+        if (
+            any(array.dtype != np.uint8 for array in arrays[:3])
+            or self.rewards_m.dtype != np.float64
+        ):
             raise ValueError("its steps are no numbers of cells and rewards")
         if self.observed.max() >= cells or self.measured.max() >= cells:
             raise ValueError("what it observed is on no foot grid")

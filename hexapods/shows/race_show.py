@@ -70,7 +70,7 @@ class RaceShow:
         self._branch_step = 0
         self._original_lanes: list[RaceLane] = []
         self._prefix: list[LaneRecording] = []
-        """What both races have in common: played until this one has computed as much."""
+        """Lanes of the original up to the branch: played until this race has computed as much."""
         if original is not None and len(original.lanes) == len(spec.lane_specs):
             self._branch_step = original.step
             self._original_lanes = self._playing(original.lanes, original.world)
@@ -140,7 +140,7 @@ class RaceShow:
         if self._ends_here:
             return
         limit = self._horizon_s
-        # Of a race that is resumed less is computed than was shown.
+        # A resumed race has computed less than was shown.
         self.time_s = min(self.time_s, limit)
         self._waiting = not self._all_complete and self._slow_down_near(limit)
         target, first = self.time_s + elapsed_s * self._rate, self.first_finish_s

@@ -21,7 +21,7 @@ class RunLabel:
     playing: bool = True
     replay: bool = False
     outcome: str = "stopped"
-    """How the run ended, if before its last step: `stopped`, `failed` or `interrupted`."""
+    """State of a run that ended before its last step: `stopped`, `failed` or `interrupted`."""
 
     def at_step(self, step: int, steps: int, *, halted: bool) -> str:
         """Return the run's name with its progress: "Race 3, stopped at step 26 of 50"."""

@@ -76,7 +76,7 @@ AT_ORIGIN = Origin(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, eq=False)
 class LaneFrame:
-    """One robot at one moment."""
+    """State of the robot of a lane at one moment."""
 
     qpos: NDArray[np.floating[Any]]
     """(7 + 3 · legs,) in the lane's own frame: the start line is y = 0, the track goes to +y."""
@@ -126,7 +126,7 @@ class Ghost:
 
 @dataclass(frozen=True, eq=False)
 class StageFrame:
-    """The whole stage at one moment."""
+    """State of the whole stage at one moment."""
 
     spec: SceneSpec
     run_id: str | None

@@ -25,10 +25,10 @@ from hexapods.tournaments.tournament_file import (
     standings_of,
 )
 
-MAX_TOLD = 3
-"""Draws of an entry that are told one by one if they differ; of more their number is told."""
+MAX_LISTED = 3
+"""Most differing draws of an entry that are listed one by one; of more, the number is given."""
 Repeated = Mapping[int, Sequence[Judgement | str]]
-"""By number of an entry, for each draw its judgement, or why there is none."""
+"""Judgements of each draw by the entry's number; in place of a missing one, the reason."""
 
 
 LAST_DIGITS_M = 1e-9
@@ -251,10 +251,10 @@ def _judgement_differences(
         )
         if in_file != again
     ]
-    yield from differing[:MAX_TOLD]
-    if len(differing) > MAX_TOLD:
+    yield from differing[:MAX_LISTED]
+    if len(differing) > MAX_LISTED:
         yield (
-            f"{_name(entry)}: {len(differing) - MAX_TOLD} more of its {len(draws)} draws differ."
+            f"{_name(entry)}: {len(differing) - MAX_LISTED} more of its {len(draws)} draws differ."
         )
 
 

@@ -51,16 +51,18 @@ class Case:
     def curve(self, gait: str) -> Mapping[str, Any] | None:
         """Return Q-learning's learning curve in a gait, or None if it has no trials yet."""
         curves = (c for c in self.curves if (c["gait"], c["agent"]) == (gait, PAPERS_AGENT))
-        return next((one for one in curves if one["steps"]), None)
+        return next((curve for curve in curves if curve["steps"]), None)
 
 
 def cases_of(summary: Mapping[str, Any]) -> list[Case]:
     """Return all cases of a summary, in the experiment's order."""
-    pairs = dict.fromkeys((one["observation"], one["robot"]) for one in summary["settings"])
+    pairs = dict.fromkeys(
+        (setting["observation"], setting["robot"]) for setting in summary["settings"]
+    )
     several = len({robot for _, robot in pairs}) > 1
     parts = {name: summary[name] for name in ("settings", "pooled", "curves", "timed")}
-    parts["curves"] = [one for one in summary["curves"] if one["blocks"] > 1]
-    parts["in_one_go"] = [one for one in summary["curves"] if one["blocks"] == 1]
+    parts["curves"] = [curve for curve in summary["curves"] if curve["blocks"] > 1]
+    parts["in_one_go"] = [curve for curve in summary["curves"] if curve["blocks"] == 1]
     return [
         Case(
             observation=observation,
@@ -71,9 +73,9 @@ def cases_of(summary: Mapping[str, Any]) -> list[Case]:
             parameters=summary["parameters"],
             **{
                 name: [
-                    one
-                    for one in entries
-                    if (one["observation"], one["robot"]) == (observation, robot)
+                    entry
+                    for entry in entries
+                    if (entry["observation"], entry["robot"]) == (observation, robot)
                 ]
                 for name, entries in parts.items()
             },
@@ -91,7 +93,7 @@ def case_label(observation: str, robot: str | None) -> str:
 def _first_with_trials(
     entries: Sequence[Mapping[str, Any]], **wanted: Any
 ) -> Mapping[str, Any] | None:
-    for one in entries:
-        if one["n"] and all(one[name] == value for name, value in wanted.items()):
-            return one
+    for entry in entries:
+        if entry["n"] and all(entry[name] == value for name, value in wanted.items()):
+            return entry
     return None

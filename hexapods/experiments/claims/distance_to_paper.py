@@ -48,8 +48,10 @@ def closeness(case: Case) -> Closeness | None:
     if not printed:
         return None
     tail = (1 - CONFIDENCE) / 2
-    inside = sum(tail <= quantile_of(one.total_m, one.points) <= 1 - tail for one in printed)
-    apart = _mean_error([np.asarray(one.points) for one in printed], printed, -1)
+    inside = sum(
+        tail <= quantile_of(setting.total_m, setting.points) <= 1 - tail for setting in printed
+    )
+    apart = _mean_error([np.asarray(setting.points) for setting in printed], printed, -1)
     return Closeness(case, inside, len(printed), float(apart))
 
 
@@ -61,29 +63,38 @@ def compare_closeness(a: Case, b: Case) -> tuple[Verdict, Interval] | None:
         is closer; None if the two cannot be compared. The interval covers the variation of our
         seeds only, not that each printed value is a single run.
     """
-    ours, others = _printed(a), _printed(b)
-    if not ours or len(ours) != len(others):
+    samples_a, samples_b = _printed(a), _printed(b)
+    if not samples_a or len(samples_a) != len(samples_b):
         return None
 
     def difference(*samples: FloatArray, axis: int = -1) -> FloatArray:
-        mine, theirs = samples[: len(ours)], samples[len(ours) :]
-        return _mean_error(theirs, others, axis) - _mean_error(mine, ours, axis)
+        values_a, values_b = samples[: len(samples_a)], samples[len(samples_a) :]
+        return _mean_error(values_b, samples_b, axis) - _mean_error(values_a, samples_a, axis)
 
-    estimate = interval([one.points for one in (*ours, *others)], difference, a.seed)
-    fewest = min(len(one.points) for one in (*ours, *others))
+    estimate = interval(
+        [setting.points for setting in (*samples_a, *samples_b)], difference, a.seed
+    )
+    fewest = min(len(setting.points) for setting in (*samples_a, *samples_b))
     return bootstrap_exceeds(estimate, 0, fewest), estimate
 
 
 def _printed(case: Case) -> list[_Printed]:
     """Return Q-learning's settings that the paper also has; none unless all have trials."""
-    learners = [one for one in case.settings if one["agent"] == PAPERS_AGENT and one["published"]]
-    if not all(one["n"] for one in learners):
+    learners = [
+        setting
+        for setting in case.settings
+        if setting["agent"] == PAPERS_AGENT and setting["published"]
+    ]
+    if not all(setting["n"] for setting in learners):
         return []
     return [
         _Printed(
-            one["gait"], one["steps"], one["published"]["total_m"], tuple(one["total"]["points_m"])
+            setting["gait"],
+            setting["steps"],
+            setting["published"]["total_m"],
+            tuple(setting["total"]["points_m"]),
         )
-        for one in learners
+        for setting in learners
     ]
 
 
@@ -92,7 +103,7 @@ def _mean_error(
 ) -> FloatArray:
     """Return the mean absolute difference of printed values and interquartile means [m]."""
     each = [
-        np.abs(iqm(points, axis) - one.total_m)
-        for points, one in zip(samples, printed, strict=True)
+        np.abs(iqm(points, axis) - setting.total_m)
+        for points, setting in zip(samples, printed, strict=True)
     ]
     return np.asarray(np.mean(each, axis=0), dtype=np.float64)

@@ -38,15 +38,15 @@ class _Curve:
 
     def __init__(self, case: Case) -> None:
         curves = [
-            one
-            for one in case.curves
-            if one["agent"] == PAPERS_AGENT
-            and one["greedy_m"]
-            and {FIRST, MIDDLE, LAST} <= set(one["steps"])
+            curve
+            for curve in case.curves
+            if curve["agent"] == PAPERS_AGENT
+            and curve["greedy_m"]
+            and {FIRST, MIDDLE, LAST} <= set(curve["steps"])
         ]
-        self._strata = [_shares(one) for one in curves]
+        self._strata = [_shares(curve) for curve in curves]
         self._seed = case.seed
-        self.fewest = min((one.shape[1] for one in self._strata), default=0)
+        self.fewest = min((stratum.shape[1] for stratum in self._strata), default=0)
 
     def statistic(self, number: Callable[[FloatArray], FloatArray]) -> Interval:
         """Return the interval of a function of the curve's three heights, (3, …)."""
@@ -102,9 +102,9 @@ def one_go(case: Case) -> OneGo | None:
 def _last_shares(curves: Sequence[Mapping[str, Any]]) -> tuple[Points, ...]:
     """Return each seed's share of greedy's distance at the end of Q-learning's curves, by gait."""
     return tuple(
-        tuple(distance_m / float(one["greedy_m"]) for distance_m in one["points_m"][-1])
-        for one in curves
-        if one["agent"] == PAPERS_AGENT and one["greedy_m"] and one["steps"][-1:] == [LAST]
+        tuple(distance_m / float(curve["greedy_m"]) for distance_m in curve["points_m"][-1])
+        for curve in curves
+        if curve["agent"] == PAPERS_AGENT and curve["greedy_m"] and curve["steps"][-1:] == [LAST]
     )
 
 
@@ -171,11 +171,11 @@ def _approaches(curve: _Curve) -> CaseFinding:
     closer, last = curve.statistic(lambda at: at[2] - at[0]), curve.at(LAST)
     under = bootstrap_exceeds(-last, -1, curve.fewest)
     nearer = bootstrap_exceeds(closer, 0, curve.fewest)
-    both: Verdict = (
+    verdict: Verdict = (
         "no" if "no" in (under, nearer) else "yes" if under == nearer else "not established"
     )
     return CaseFinding.of(
-        both,
+        verdict,
         f"From 250 to 2,000 steps the curve rises by {shares(closer)} of greedy's distance, to "
         f"{shares(last)} of it.",
     )

@@ -51,14 +51,14 @@ def gait_claims(alike_after: int, slow_after: int) -> tuple[Claim, Claim]:
 
 def odd_gait_ratio(case: Case, steps: int) -> Interval | None:
     """Return the distance of left-right, mirrored as a share of the other three gaits' together."""
-    odd, others = total_distances(case, ODD_GAIT, steps), _others(case, steps)
-    if not odd or others is None or pooled_iqm(*map(np.asarray, others)) <= 0:
+    odd, other_gaits = total_distances(case, ODD_GAIT, steps), _others(case, steps)
+    if not odd or other_gaits is None or pooled_iqm(*map(np.asarray, other_gaits)) <= 0:
         return None
 
-    def ratio(odd: FloatArray, *others: FloatArray, axis: int = -1) -> FloatArray:
-        return iqm(odd, axis) / pooled_iqm(*others, axis=axis)
+    def ratio(odd: FloatArray, *other_gaits: FloatArray, axis: int = -1) -> FloatArray:
+        return iqm(odd, axis) / pooled_iqm(*other_gaits, axis=axis)
 
-    return interval((odd, *others), ratio, case.seed)
+    return interval((odd, *other_gaits), ratio, case.seed)
 
 
 def total_distances(case: Case, gait: str, steps: int) -> Points:
@@ -77,18 +77,18 @@ def _others(case: Case, steps: int) -> list[Points] | None:
 
 
 def _alike(case: Case, steps: int) -> CaseFinding | None:
-    others = _others(case, steps)
-    if others is None:
+    distances = _others(case, steps)
+    if distances is None:
         return None
 
     def worst_of_best(*walks: FloatArray, axis: int = -1) -> FloatArray:
-        middles = np.stack([iqm(one, axis) for one in walks])
+        middles = np.stack([iqm(walk, axis) for walk in walks])
         return np.asarray(middles.min(axis=0) / middles.max(axis=0), dtype=np.float64)
 
-    ratio = interval(others, worst_of_best, case.seed)
-    middles = [float(iqm(np.asarray(points))) for points in others]
+    ratio = interval(distances, worst_of_best, case.seed)
+    middles = [float(iqm(np.asarray(points))) for points in distances]
     return CaseFinding.of(
-        bootstrap_exceeds(ratio, ALIKE_RATIO, min(map(len, others))),
+        bootstrap_exceeds(ratio, ALIKE_RATIO, min(map(len, distances))),
         f"The other three cover {span(middles)} after "
         f"{steps:,} steps; the worst {shares(ratio)} of the best.",
     )

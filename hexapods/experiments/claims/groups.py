@@ -14,19 +14,23 @@ HALF = 0.5
 
 def _is_level(case: Case) -> CaseFinding | None:
     """Judge the fewest groups: the gait with the highest share of greedy's distance."""
-    learned = [one for one in case.settings if one["agent"] == PAPERS_AGENT and one["relative"]]
+    learned = [
+        setting
+        for setting in case.settings
+        if setting["agent"] == PAPERS_AGENT and setting["relative"]
+    ]
     if not learned:
         return None
-    ordered = sorted(learned, key=lambda one: -float(one["relative"]["iqm"]))
-    told = [
-        f"{gait_name(one['gait'])} {shares(one['relative'])}, "
-        f"{percent(one['reaches_greedy']['share'])} of the seeds reach {percent(REACHED_SHARE)}"
-        for one in ordered
+    ordered = sorted(learned, key=lambda setting: -float(setting["relative"]["iqm"]))
+    descriptions = [
+        f"{gait_name(setting['gait'])} {shares(setting['relative'])}, "
+        f"{percent(setting['reaches_greedy']['share'])} of the seeds reach {percent(REACHED_SHARE)}"
+        for setting in ordered
     ]
     best = ordered[0]
     return CaseFinding.of(
         Interval.of(best["reaches_greedy"]).exceeds(HALF),
-        f"After {best['steps']:,} steps, of greedy's distance: {'; '.join(told)}.",
+        f"After {best['steps']:,} steps, of greedy's distance: {'; '.join(descriptions)}.",
     )
 
 

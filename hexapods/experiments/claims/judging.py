@@ -59,11 +59,11 @@ def judge(summary: Mapping[str, Any], claims: Sequence[Claim]) -> list[dict[str,
     """
     cases = cases_of(summary)
     judged = []
-    for one in claims:
-        results = [(case, one.find(case)) for case in cases]
+    for claim in claims:
+        results = [(case, claim.find(case)) for case in cases]
         findings = [(case, finding) for case, finding in results if finding is not None]
         if findings:
-            judged.append(_judged(one, findings))
+            judged.append(_judged(claim, findings))
     return judged
 
 

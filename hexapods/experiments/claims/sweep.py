@@ -12,7 +12,7 @@ from hexapods.experiments.statistics import CONFIDENCE, Points, bootstrap_exceed
 from hexapods.runs.config import TrainingConfig, agent_settings
 
 PARAMETERS: Mapping[str, Value] = {
-    **{name: one.default for name, one in agent_settings(PAPERS_AGENT).items()},
+    **{name: setting.default for name, setting in agent_settings(PAPERS_AGENT).items()},
     "steps_per_episode": TrainingConfig.steps_per_episode,
 }
 """The paper's values of what a sweep varies."""
@@ -24,21 +24,21 @@ def _tuning(case: Case) -> CaseFinding | None:
 
     The confidence level has a Bonferroni correction for selecting the best of several candidates.
     """
-    ours = [
-        one
-        for one in case.pooled
-        if one["agent"] == PAPERS_AGENT
-        and one["relative"]
-        and len(_seeds(case, one)) == len(one["gaits"])
+    learned = [
+        pool
+        for pool in case.pooled
+        if pool["agent"] == PAPERS_AGENT
+        and pool["relative"]
+        and len(_seeds(case, pool)) == len(pool["gaits"])
     ]
-    papers = [one for one in ours if _is_papers(one)]
+    papers = [pool for pool in learned if _is_papers(pool)]
     candidates = [
-        one for one in ours if any(_comparable(one, papers_pool) for papers_pool in papers)
+        pool for pool in learned if any(_comparable(pool, papers_pool) for papers_pool in papers)
     ]
     if not candidates:
         return None
-    best = max(candidates, key=lambda one: float(one["relative"]["iqm"]))
-    papers_pool = next(one for one in papers if _comparable(best, one))
+    best = max(candidates, key=lambda pool: float(pool["relative"]["iqm"]))
+    papers_pool = next(pool for pool in papers if _comparable(best, pool))
     a, b = _seeds(case, best), _seeds(case, papers_pool)
     chance = improvement(a, b, case.seed, 1 - (1 - CONFIDENCE) / len(candidates))
     values = ", ".join(
@@ -54,22 +54,22 @@ def _tuning(case: Case) -> CaseFinding | None:
     )
 
 
-def _is_papers(one: Mapping[str, Any]) -> bool:
-    return all(one[name] == value for name, value in PARAMETERS.items())
+def _is_papers(pool: Mapping[str, Any]) -> bool:
+    return all(pool[name] == value for name, value in PARAMETERS.items())
 
 
-def _comparable(one: Mapping[str, Any], papers_pool: Mapping[str, Any]) -> bool:
-    same = all(one[name] == papers_pool[name] for name in (*_REST, "gaits"))
-    return same and not _is_papers(one)
+def _comparable(pool: Mapping[str, Any], papers_pool: Mapping[str, Any]) -> bool:
+    same = all(pool[name] == papers_pool[name] for name in (*_REST, "gaits"))
+    return same and not _is_papers(pool)
 
 
 def _seeds(case: Case, pool: Mapping[str, Any]) -> tuple[Points, ...]:
     """Return the seeds' distances [m] of a pool's settings, one tuple per gait."""
     named = (*PARAMETERS, *_REST, "agent")
     return tuple(
-        tuple(one["total"]["points_m"])
-        for one in case.settings
-        if one["total"] and all(one[name] == pool[name] for name in named)
+        tuple(setting["total"]["points_m"])
+        for setting in case.settings
+        if setting["total"] and all(setting[name] == pool[name] for name in named)
     )
 
 

@@ -21,13 +21,13 @@ AFTER = (500, 1000)
 
 def _dominates(case: Case) -> CaseFinding | None:
     raced = [
-        one
-        for one in case.settings
-        if one["agent"] == PAPERS_AGENT and one["n"] and one["beats_greedy_total"]
+        setting
+        for setting in case.settings
+        if setting["agent"] == PAPERS_AGENT and setting["n"] and setting["beats_greedy_total"]
     ]
     if not raced:
         return None
-    verdicts = {one["beats_greedy_total"]["verdict"] for one in raced}
+    verdicts = {setting["beats_greedy_total"]["verdict"] for setting in raced}
     verdict: Verdict = (
         "no" if "yes" in verdicts else "yes" if verdicts == {"no"} else ("not established")
     )
@@ -37,8 +37,8 @@ def _dominates(case: Case) -> CaseFinding | None:
         for steps, pool in pools
         if pool and pool["relative"]
     ]
-    n = sum(one["n"] for one in raced)  # whole numbers
-    wins = ordered_sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
+    n = sum(setting["n"] for setting in raced)  # whole numbers
+    wins = ordered_sum(setting["n"] * setting["beats_greedy_total"]["share"] for setting in raced)
     return CaseFinding.of(
         verdict,
         f"Q-learning covers {listed(shares_of_greedy)}; {wins:.0f} of its {counted(n, 'walk')} "
@@ -51,7 +51,7 @@ def _real_time(case: Case, steps: int) -> CaseFinding | None:
     if pool is None or pool["relative_finished"] is None:
         return None
     relative = pool["relative_finished"]
-    fewest = min(one["n"] for one in case.settings if one["steps"] == steps)
+    fewest = min(setting["n"] for setting in case.settings if setting["steps"] == steps)
     return CaseFinding.of(
         bootstrap_exceeds(Interval.of(relative), REACHED_SHARE, fewest),
         f"When Q-learning has taken its 50 steps it has come {shares(relative)} as far as greedy, "
@@ -100,7 +100,7 @@ def _on_par(case: Case) -> CaseFinding | None:
 
 
 def _two_step(case: Case) -> CaseFinding | None:
-    thinks = [_thinking(one["lanes"]) for one in case.timed]
+    thinks = [_thinking(race["lanes"]) for race in case.timed]
     if not thinks:
         return None
     slowest, fastest = max(share for share, _ in thinks), min(share for share, _ in thinks)
@@ -117,13 +117,17 @@ def _two_step(case: Case) -> CaseFinding | None:
 
 def _thinking(lanes: list[Mapping[str, Any]]) -> tuple[float, float]:
     """Return two-step's decision time as a share of its walking time, and in seconds."""
-    lane = next(one for one in lanes if one["agent"] == "two-step")
+    lane = next(lane for lane in lanes if lane["agent"] == "two-step")
     return lane["decision_s"] / (lane["elapsed_s"] - lane["decision_s"]), lane["decision_s"]
 
 
 def _by_the_paper(case: Case) -> str:
     times = {
-        agent: [one["elapsed_s"] for one in case.settings if one["agent"] == agent and one["n"]]
+        agent: [
+            setting["elapsed_s"]
+            for setting in case.settings
+            if setting["agent"] == agent and setting["n"]
+        ]
         for agent in ("greedy", "two-step")
     }
     if not all(times.values()):

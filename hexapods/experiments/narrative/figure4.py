@@ -17,16 +17,16 @@ Curve = Mapping[str, Any]
 
 def describe_seed_spread(cases: Sequence[Case]) -> str | None:
     """Describe the seeds' spread at the end of a curve, and how often a single curve falls."""
-    curves = [one for case in cases for one in case.curves if one["steps"]]
+    curves = [curve for case in cases for curve in case.curves if curve["steps"]]
     if not curves or len(curves[0]["points_m"][0]) < 2:
         return None
-    one, at = curves[0], next(c.label for c in cases if curves[0] in c.curves)
-    last, falls = one["points_m"][-1], [_falls(curve) for curve in curves]
+    curve, at = curves[0], next(c.label for c in cases if curves[0] in c.curves)
+    last, falls = curve["points_m"][-1], [_falls(curve) for curve in curves]
     down, blocks = (sum(column) for column in zip(*falls, strict=True))  # whole numbers
     return (
         f"The paper draws one curve a gait. Here every curve is {counted(len(last), 'seed')}: "
         "the line is the middle of them, the band its interval, the faint lines are the seeds. "
-        f"{gait_name(one['gait'])} with {at}: after {one['steps'][-1]:,} steps the worst seed "
+        f"{gait_name(curve['gait'])} with {at}: after {curve['steps'][-1]:,} steps the worst seed "
         f"covers {metres(min(last))}, the best {metres(max(last))}. A single seed's curve goes "
         f"down from one block to the next in {percent(down / blocks)} of "
         "cases; who draws one curve draws these dents as well."
@@ -46,7 +46,7 @@ def _falls(curve: Curve) -> tuple[int, int]:
 def compare_observations(cases: Sequence[Case]) -> str | None:
     """Compare the learning curves of the two observations with the shape the paper describes."""
     descriptions = [_describe_curve(case) for case in cases]
-    sentences = [one for one in descriptions if one]
+    sentences = [sentence for sentence in descriptions if sentence]
     if not sentences:
         return None
     return (
@@ -60,9 +60,9 @@ def compare_observations(cases: Sequence[Case]) -> str | None:
 def _describe_curve(case: Case) -> str | None:
     """Describe the gaits' mean curve at its first, middle and last block, as shares of greedy."""
     curves = [
-        one
-        for one in case.curves
-        if one["steps"] and one["greedy_m"] and one["agent"] == PAPERS_AGENT
+        curve
+        for curve in case.curves
+        if curve["steps"] and curve["greedy_m"] and curve["agent"] == PAPERS_AGENT
     ]
     if not curves:
         return None
@@ -76,7 +76,9 @@ def _describe_curve(case: Case) -> str | None:
 
 
 def _mean_share(curves: Sequence[Curve], block: int) -> float:
-    return ordered_sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
+    return ordered_sum(float(curve["iqm_m"][block] / curve["greedy_m"]) for curve in curves) / len(
+        curves
+    )
 
 
 def compare_with_one_go(cases: Sequence[Case]) -> str | None:
@@ -90,10 +92,10 @@ def compare_with_one_go(cases: Sequence[Case]) -> str | None:
         "not established": "Whether one go is better there is not established.",
     }
     sentences = [
-        f"With {case.label} the blocks come to {shares(beside.in_blocks)} of greedy's distance "
-        f"after 2,000 steps, a practice in one go to {shares(beside.in_one_go)}: "
-        f"a difference of {shares(beside.gain)}. {verdicts[beside.verdict]}"
-        for case, beside in compared
+        f"With {case.label} the blocks come to {shares(comparison.in_blocks)} of greedy's distance "
+        f"after 2,000 steps, a practice in one go to {shares(comparison.in_one_go)}: "
+        f"a difference of {shares(comparison.gain)}. {verdicts[comparison.verdict]}"
+        for case, comparison in compared
     ]
     return (
         "The paper saves the Q-values after every 250 steps and goes on from them. Each block is a "
@@ -107,10 +109,10 @@ def compare_agents(cases: Sequence[Case]) -> str | None:
     """Compare the final distances of the learning agents; None if there is only one."""
     sentences = []
     for case in cases:
-        pools = [one for one in case.pooled if one["relative"] and one["blocks"] != 1]
-        if len({one["agent"] for one in pools}) > 1:
+        pools = [pool for pool in case.pooled if pool["relative"] and pool["blocks"] != 1]
+        if len({pool["agent"] for pool in pools}) > 1:
             shares = [
-                f"{title_of(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
+                f"{title_of(pool['agent'])} {percent(pool['relative']['iqm'])}" for pool in pools
             ]
             sentences.append(f"With {case.label}: {listed(shares)}.")
     if not sentences:

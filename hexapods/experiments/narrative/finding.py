@@ -13,7 +13,7 @@ from hexapods.experiments.narrative.sweep import combination_name
 from hexapods.experiments.presets import Preset
 
 LEVEL_M = 0.01
-"""Of two who are less apart, neither is farther."""
+"""Least difference of two distances that counts as farther [m]."""
 _PLACE_NAMES: Mapping[str, Callable[[Any], str]] = {
     "gait": gait_name,
     "world": world_name,
@@ -35,21 +35,21 @@ def find(summary: Mapping[str, Any], preset: Preset) -> str:
 
 def _best_of(cases: Sequence[Case]) -> str:
     """Name the best combination, and how many may be as good: their intervals overlap with its."""
-    pools = [(case, one) for case in cases for one in case.pooled if one["walkers"]]
+    pools = [(case, pool) for case in cases for pool in case.pooled if pool["walkers"]]
     if len(pools) < 2:
         return ""
     case, best = max(pools, key=lambda pool: float(pool[1]["relative"]["iqm"]))
-    others = [one for _, one in pools if one is not best]
+    rest = [pool for _, pool in pools if pool is not best]
     place = f" with {case.label}" if len(cases) > 1 else ""
-    name = f"{combination_name(best, case, [one for _, one in pools])}{place}"
+    name = f"{combination_name(best, case, [pool for _, pool in pools])}{place}"
     share = f"{shares(best['relative'])} of greedy's distance"
     if best["relative"]["low"] is None:
         return f"{name} leads with {share}; so few seeds tell little."
     low = best["relative"]["low"]
-    equals = sum(_reaches(one["relative"], low) for one in others)  # whole numbers
+    equals = sum(_reaches(pool["relative"], low) for pool in rest)  # whole numbers
     if not equals:
         return f"{name} walks farthest: {share}."
-    return f"{name} leads with {share}; {_some_of(equals, len(others))} may be as good."
+    return f"{name} leads with {share}; {_some_of(equals, len(rest))} may be as good."
 
 
 def _reaches(share: Mapping[str, Any], low: float) -> bool:
@@ -65,14 +65,14 @@ def _some_of(number: int, total: int) -> str:
 def _farthest(entries: Sequence[Mapping[str, Any]]) -> str:
     """Name the learner that walks farthest in most gaits and worlds, or how far the only one is."""
     places: defaultdict[tuple[str, ...], list[Mapping[str, Any]]] = defaultdict(list)
-    for one in entries:
-        if one["role"] == "learner":
-            places[tuple(one[field] for field in _PLACE)].append(one)
-    learners = {one["agent"] for rivals in places.values() for one in rivals}
+    for entry in entries:
+        if entry["role"] == "learner":
+            places[tuple(entry[field] for field in _PLACE)].append(entry)
+    learners = {entry["agent"] for rivals in places.values() for entry in rivals}
     if len(learners) == 1:
         (agent,) = learners
-        return _walked(agent, [one for rivals in places.values() for one in rivals])
-    # Where some have no trial yet, nobody is the farthest.
+        return _walked(agent, [entry for rivals in places.values() for entry in rivals])
+    # A place where a learner has no trial yet has no winner.
     whole = [rivals for rivals in places.values() if {x["agent"] for x in rivals} == learners]
     won = Counter(winner for rivals in whole if (winner := _winner(rivals)))
     if not won:
@@ -81,7 +81,7 @@ def _farthest(entries: Sequence[Mapping[str, Any]]) -> str:
     rivals = f"Of {counted(len(learners), 'learner')} {title_of(winner)} walks farthest"
     if len(whole) == 1:
         return f"{rivals}."
-    varied = [one for n, one in enumerate(_PLACE) if len({place[n] for place in places}) > 1]
+    varied = [field for n, field in enumerate(_PLACE) if len({place[n] for place in places}) > 1]
     places_tried = f"{varied[0]}s" if len(varied) == 1 else f"combinations of {listed(varied)}"
     share = "all" if number == len(whole) else f"{number} of"
     return f"{rivals} in {share} {len(whole)} {places_tried}."
@@ -90,32 +90,34 @@ def _farthest(entries: Sequence[Mapping[str, Any]]) -> str:
 def _winner(rivals: Sequence[Mapping[str, Any]]) -> str | None:
     """Return the agent that is clearly ahead of all others; a learner may have several entries."""
     best = max(rivals, key=_distance_m)
-    others = [_distance_m(one) for one in rivals if one["agent"] != best["agent"]]
-    return best["agent"] if _distance_m(best) - max(others) >= LEVEL_M else None
+    distances = [_distance_m(entry) for entry in rivals if entry["agent"] != best["agent"]]
+    return best["agent"] if _distance_m(best) - max(distances) >= LEVEL_M else None
 
 
-def _distance_m(one: Mapping[str, Any]) -> float:
-    return float(one["distance"]["iqm"])
+def _distance_m(entry: Mapping[str, Any]) -> float:
+    return float(entry["distance"]["iqm"])
 
 
 def _walked(agent: str, entries: Sequence[Mapping[str, Any]]) -> str:
     """Return the shares of greedy's distance, first that of the place where it is highest."""
-    known = [one for one in entries if one["of_greedy"]]
-    if not known:
+    compared = [entry for entry in entries if entry["of_greedy"]]
+    if not compared:
         return ""
-    *others, best = sorted(known, key=lambda one: float(one["of_greedy"]["iqm"]))
-    varied = [one for one in _PLACE if len({entry[one] for entry in entries}) > 1]
+    *rest_entries, best = sorted(compared, key=lambda entry: float(entry["of_greedy"]["iqm"]))
+    varied = [field for field in _PLACE if len({entry[field] for entry in entries}) > 1]
     share = percent(best["of_greedy"]["iqm"])
-    if len(varied) == 1 and others and share != percent(others[-1]["of_greedy"]["iqm"]):
+    if len(varied) == 1 and rest_entries and share != percent(rest_entries[-1]["of_greedy"]["iqm"]):
         place = _PLACE_NAMES[varied[0]](best[varied[0]])
-        rest = "the other" if len(others) == 1 else "the others"
+        rest = "the other" if len(rest_entries) == 1 else "the others"
         return (
             f"{title_of(agent)} walks {share} of greedy's distance with {place}, and "
-            f"{_range_of(others)} with {rest}."
+            f"{_range_of(rest_entries)} with {rest}."
         )
-    return f"{title_of(agent)} walks {_range_of(known)} of greedy's distance."
+    return f"{title_of(agent)} walks {_range_of(compared)} of greedy's distance."
 
 
 def _range_of(entries: Sequence[Mapping[str, Any]]) -> str:
-    shares_walked = sorted(one["of_greedy"]["iqm"] for one in entries)
-    return " to ".join(dict.fromkeys(percent(one) for one in (shares_walked[0], shares_walked[-1])))
+    shares_walked = sorted(entry["of_greedy"]["iqm"] for entry in entries)
+    return " to ".join(
+        dict.fromkeys(percent(share) for share in (shares_walked[0], shares_walked[-1]))
+    )

@@ -20,7 +20,7 @@ def explain_odd_gait(cases: Sequence[Case]) -> str | None:
     None for the kinematic simulator, which models no servos.
     """
     descriptions = [_describe_case(case) for case in cases if case.simulator == "mujoco"]
-    sentences = [one for one in descriptions if one]
+    sentences = [sentence for sentence in descriptions if sentence]
     if not sentences:
         return None
     return (
@@ -45,7 +45,7 @@ def _describe_case(case: Case) -> str | None:
 
 def _greedy_in_other_gaits(case: Case) -> list[float]:
     settings = [case.setting(gait, 0, "greedy") for gait in OTHER_GAITS]
-    return [float(one["total"]["iqm_m"]) for one in settings if one]
+    return [float(setting["total"]["iqm_m"]) for setting in settings if setting]
 
 
 def _printed_numbers() -> str:
@@ -60,14 +60,14 @@ def _printed_numbers() -> str:
 
 def _greedy_slow_too(cases: Sequence[Case]) -> str:
     """Name the robots on which greedy is slow in this gait too, unlike in the paper."""
-    both = []
+    slow_robots = []
     for case in cases:
         greedy, rest = case.setting(ODD_GAIT, 0, "greedy"), _greedy_in_other_gaits(case)
         if greedy and rest and greedy["total"]["iqm_m"] < SLOW_RATIO * min(rest):
-            both.append(case.robot)
-    if not both:
+            slow_robots.append(case.robot)
+    if not slow_robots:
         return ""
-    robots = listed(dict.fromkeys(both))
+    robots = listed(dict.fromkeys(slow_robots))
     return (
         f" On our {robots} robot greedy is slow in this gait as well, in the paper only the "
         "learner: softer servos alone do not explain its numbers."

@@ -56,9 +56,11 @@ def _caution(summary: Mapping[str, Any], preset: Preset) -> str:
             "These are runs of the kinematic simulator: feet never slip, servos are never soft, "
             "and all gaits and robots walk alike. What depends on physics needs MuJoCo."
         )
-    told = trials["done"] + len(trials["set_aside"]) - trials["failed"]
-    if told < trials["total"]:
-        # Of its own trials: since it was written, more may have been done.
+    succeeded = trials["done"] + len(trials["set_aside"]) - trials["failed"]
+    if succeeded < trials["total"]:
+        # Count the trials of this summary: since it was written, more may have been done.
         why = f": {failures_text(trials)}" if trials["failed"] else ""
-        sentences.append(f"What is said here is of {told:,} of {trials['total']:,} trials{why}.")
+        sentences.append(
+            f"What is said here is of {succeeded:,} of {trials['total']:,} trials{why}."
+        )
     return " ".join(sentences)

@@ -13,15 +13,15 @@ from hexapods.experiments.names import setting_names
 
 def describe_best_and_worst(cases: Sequence[Case]) -> str | None:
     """Describe the best and the worst combination, with a caution about the selection bias."""
-    pools = [(case, one) for case in cases for one in case.pooled if one["walkers"]]
+    pools = [(case, pool) for case in cases for pool in case.pooled if pool["walkers"]]
     if len(pools) < 2:
         return None
     ordered = sorted(pools, key=lambda pool: float(pool[1]["relative"]["iqm"]))
     sentences = [
-        f"The {word} is {combination_name(one, case, [pool for _, pool in pools])} with "
-        f"{case.label}: {shares(one['relative'])} of greedy's distance, "
-        f"{percent(one['walkers']['share'])} of the seeds walk."
-        for word, (case, one) in (("best", ordered[-1]), ("worst", ordered[0]))
+        f"The {word} is {combination_name(pool, case, [pool for _, pool in pools])} with "
+        f"{case.label}: {shares(pool['relative'])} of greedy's distance, "
+        f"{percent(pool['walkers']['share'])} of the seeds walk."
+        for word, (case, pool) in (("best", ordered[-1]), ("worst", ordered[0]))
     ]
     return (
         f"{len(pools)} combinations were tried, each over all gaits. {' '.join(sentences)} The "
@@ -31,7 +31,7 @@ def describe_best_and_worst(cases: Sequence[Case]) -> str | None:
 
 
 def combination_name(
-    one: Mapping[str, Any], case: Case, among: Sequence[Mapping[str, Any]] | None = None
+    pool: Mapping[str, Any], case: Case, among: Sequence[Mapping[str, Any]] | None = None
 ) -> str:
     """Name a combination by the parameters that vary among the pools, or else by its agent.
 
@@ -47,30 +47,33 @@ def combination_name(
     varied = [
         name
         for name in case.parameters
-        if any(len({other[name] for other in others}) > 1 for others in of_agents)
+        if any(len({other[name] for other in pools}) > 1 for pools in of_agents)
     ]
-    parts = [
-        parameter_text(name, one[name], one["agent"]) for name in varied if one[name] is not None
+    words = [
+        parameter_text(name, pool[name], pool["agent"]) for name in varied if pool[name] is not None
     ]
-    if len({other["agent"] for other in among}) > 1 or not parts:
-        parts.insert(0, title_of(one["agent"]))
-    return ", ".join(parts)
+    if len({other["agent"] for other in among}) > 1 or not words:
+        words.insert(0, title_of(pool["agent"]))
+    return ", ".join(words)
 
 
 def describe_seed_spread(cases: Sequence[Case]) -> str | None:
     """Describe the setting whose seeds spread most."""
     learners = [
-        one for case in cases for one in case.settings if one["role"] == "learner" and one["n"] > 1
+        setting
+        for case in cases
+        for setting in case.settings
+        if setting["role"] == "learner" and setting["n"] > 1
     ]
     if not learners:
         return None
-    one = max(learners, key=lambda s: max(s["total"]["points_m"]) - min(s["total"]["points_m"]))
-    points = one["total"]["points_m"]
+    widest = max(learners, key=lambda s: max(s["total"]["points_m"]) - min(s["total"]["points_m"]))
+    points = widest["total"]["points_m"]
     names = setting_names(learners, cases[0].parameters)
     return (
-        f"The setting that spreads most is {names[one['key']]}: of {counted(one['n'], 'seed')} "
-        f"the worst covers {metres(min(points))} and the best {metres(max(points))}. Two settings "
-        "that were each tried once would have told little."
+        f"The setting that spreads most is {names[widest['key']]}: of "
+        f"{counted(widest['n'], 'seed')} the worst covers {metres(min(points))} and the best "
+        f"{metres(max(points))}. Two settings that were each tried once would have told little."
     )
 
 

@@ -21,7 +21,7 @@ def describe_seed_spread(cases: Sequence[Case]) -> str | None:
     learners = _learners(cases)
     if not learners:
         return None
-    one = max(learners, key=lambda s: max(s["total"]["points_m"]) - min(s["total"]["points_m"]))
+    widest = max(learners, key=lambda s: max(s["total"]["points_m"]) - min(s["total"]["points_m"]))
     first = learners[0]
     at = next(case.label for case in cases if first in case.settings)
     points = first["total"]["points_m"]
@@ -30,8 +30,8 @@ def describe_seed_spread(cases: Sequence[Case]) -> str | None:
         f"after {first['steps']:,} steps, with {at}: the middle is {distance(first['total'])}, "
         f"but of {counted(first['n'], 'seed')} the worst covers {metres(min(points))} and the best "
         f"{metres(max(points))}. "
-        f"The widest spread of all settings is {metres(min(one['total']['points_m']))} to "
-        f"{metres(max(one['total']['points_m']))}."
+        f"The widest spread of all settings is {metres(min(widest['total']['points_m']))} to "
+        f"{metres(max(widest['total']['points_m']))}."
     ]
     comparisons = [s["beats_greedy"] for s in learners if s["beats_greedy"]]
     decided_shares = [b["share"] for b in comparisons if b["verdict"] != "not established"]
@@ -51,8 +51,8 @@ def describe_seed_spread(cases: Sequence[Case]) -> str | None:
 def _more_practice_worse(cases: Sequence[Case]) -> list[str]:
     case = cases[0]
     gaits = dict.fromkeys(s["gait"] for s in case.settings)
-    both = [(case.setting(g, 500), case.setting(g, 1000)) for g in gaits]
-    pairs = [(_points(a), _points(b)) for a, b in both if a and b]
+    gait_settings = [(case.setting(g, 500), case.setting(g, 1000)) for g in gaits]
+    pairs = [(_points(a), _points(b)) for a, b in gait_settings if a and b]
     if not pairs:
         return []
     chance = improvement(tuple(a for a, _ in pairs), tuple(b for _, b in pairs), case.seed)
@@ -98,15 +98,15 @@ def _observation_label(case: Case) -> str:
 
 def _describe_nearer(pair: Sequence[Case]) -> list[str]:
     a, b = pair
-    close, verdict = [closeness(one) for one in pair], compare_closeness(a, b)
+    close, verdict = [closeness(case) for case in pair], compare_closeness(a, b)
     if close[0] is None or close[1] is None or verdict is None:
         return []
     counts = [
-        f"{one.inside} of the {one.compared} printed distances lie within the central 95 % of the "
-        f"seeds with {_observation_label(one.case)}, {metres(one.mean_error_m)} from our middle on "
-        "average"
-        for one in close
-        if one
+        f"{comparison.inside} of the {comparison.compared} printed distances lie within the "
+        f"central 95 % of the seeds with {_observation_label(comparison.case)}, "
+        f"{metres(comparison.mean_error_m)} from our middle on average"
+        for comparison in close
+        if comparison
     ]
     nearer_case = {"yes": a, "no": b}.get(verdict[0])
     last = (
@@ -124,10 +124,10 @@ def compare_text_with_table(cases: Sequence[Case]) -> str | None:
     for case in cases:
         settings = [case.setting(gait, 1000) for gait in gaits]
         phrases = [
-            f"{shares(one['beats_greedy'])} in {gait_name(one['gait'])} "
-            f"({_VERDICTS[one['beats_greedy']['verdict']]})"
-            for one in settings
-            if one and one["beats_greedy"]
+            f"{shares(setting['beats_greedy'])} in {gait_name(setting['gait'])} "
+            f"({_VERDICTS[setting['beats_greedy']['verdict']]})"
+            for setting in settings
+            if setting and setting["beats_greedy"]
         ]
         if len(phrases) == 2:
             sentences.append(f"With {case.label}: {listed(phrases)}.")
@@ -144,13 +144,13 @@ def compare_text_with_table(cases: Sequence[Case]) -> str | None:
 
 def compare_clocks(cases: Sequence[Case]) -> str | None:
     """Compare the paper clock with times measured on this machine, and their effect on races."""
-    timed = [one["lanes"] for case in cases for one in case.timed]
+    timed = [race["lanes"] for case in cases for race in case.timed]
     times = {
         agent: [
-            one["elapsed_s"]
+            setting["elapsed_s"]
             for case in cases
-            for one in case.settings
-            if one["agent"] == agent and one["elapsed_s"]
+            for setting in case.settings
+            if setting["agent"] == agent and setting["elapsed_s"]
         ]
         for agent in ("greedy", "two-step")
     }
@@ -178,10 +178,10 @@ def compare_clocks(cases: Sequence[Case]) -> str | None:
 
 def _learners(cases: Sequence[Case]) -> Settings:
     return [
-        one
+        setting
         for case in cases
-        for one in case.settings
-        if one["agent"] == PAPERS_AGENT and one["n"] > 1
+        for setting in case.settings
+        if setting["agent"] == PAPERS_AGENT and setting["n"] > 1
     ]
 
 
