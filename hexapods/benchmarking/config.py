@@ -58,9 +58,13 @@ class BenchmarkConfig(Record):
     def __post_init__(self) -> None:
         tasks_of(self.chosen, self.tasks)
         check_observation(self.observation)
+        valid = {
+            "tasks": ", ".join(self.chosen.tasks),
+            "budgets": f"whole numbers from 1 to {MAX_STEPS:,}",
+        }
         for name, values in (("tasks", self.tasks), ("budgets", self.budgets)):
             if not values:
-                raise InvalidInput(f"{name} must name at least one")
+                raise InvalidInput(f"{name} must name at least one; valid: {valid[name]}")
             if len(set(values)) < len(values):
                 raise InvalidInput(f"{name} names something twice")
         if learns(self.agent) or self.budgets != (WITHOUT_PRACTICE,):

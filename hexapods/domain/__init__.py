@@ -10,8 +10,8 @@ Robots:
   timing; `creatures`: those that are built in; `tolerance`: robots as they are built.
 - `robot_model`: a robot from a file, as plain numbers; `model_robot`: the same as a `Robot`;
   `model_geometry`: its forward kinematics; `suggestions`: the foot grid with which it begins.
-- `robot_documents`, `model_documents`: a stored robot by value; `robot_library`: where stored robots
-  are found by their ids.
+- `robot_documents`, `model_documents`: a stored robot by value; `robot_library`: where robots are
+  found by their ids.
 Gaits and steps:
 - `gait`: orientation and groups of legs; `grid`: the foot grid; `observation`: how the state is
   read, and the legal actions.

@@ -9,10 +9,10 @@ from annotated_types import Ge, Le
 
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import PAPER_GAITS, AnyGait
-from hexapods.domain.observation import PAPER_OBSERVATIONS, Observation
+from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS, AnyGait
+from hexapods.domain.observation import OBSERVATIONS, PAPER_OBSERVATIONS, Observation
 from hexapods.domain.records import Record
-from hexapods.domain.robot import AnyRobot, Robot
+from hexapods.domain.robot import PRESETS, AnyRobot, Robot
 from hexapods.domain.settings import (
     REQUIRED,
     DeclaredSetting,
@@ -22,7 +22,7 @@ from hexapods.domain.settings import (
     declared_fields,
 )
 from hexapods.domain.short_repr import short_repr
-from hexapods.domain.world import lasting_world
+from hexapods.domain.world import WORLDS, lasting_world
 from hexapods.experiments.presets import GRID, Preset, preset_of
 from hexapods.runs.config import (
     Divisions,
@@ -35,6 +35,7 @@ from hexapods.runs.config import (
     Tolerance,
     TrainingConfig,
     agent_settings,
+    usable_agents,
 )
 
 MAX_SEEDS = 10_000
@@ -124,9 +125,23 @@ class ExperimentConfig(Record):
         lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
         for name, values in lists.items():
             if not values and not (name == "gaits" and preset.has_own_gaits):
-                raise InvalidInput(f"{name} must name at least one")
+                raise InvalidInput(f"{name} must name at least one; valid: {self._valid(name)}")
             if any(value in values[:place] for place, value in enumerate(values)):
                 raise InvalidInput(f"{name} names something twice")
+
+    def _valid(self, name: str) -> str:
+        """Return in words which values a list, a field of the grid or an agent's setting takes."""
+        names: Mapping[str, Iterable[str]] = {
+            "agents": [agent for agent in usable_agents() if compares(self.preset, agent)],
+            "gaits": NAMED_GAITS,
+            "observations": OBSERVATIONS,
+            "robots": PRESETS,
+            "worlds": WORLDS,
+        }
+        if name in names:
+            return ", ".join(names[name])
+        grid = declared_fields(TrainingConfig)
+        return grid[name].valid if name in grid else settings_by_name(self.agents)[name][0].valid
 
     @property
     def preset(self) -> Preset:
