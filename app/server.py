@@ -44,7 +44,7 @@ from app.api.policy import (
     WATCH_STAGE,
     GuardedPage,
     GuardedSocket,
-    Policy,
+    RoutePolicy,
     api_router,
     guard_everything,
 )
@@ -226,7 +226,7 @@ def _check_is_new(feature: type[Feature], path: str, is_taken: bool) -> None:
 
 def _viewer_routes() -> list[BaseRoute]:
     """Return the routes of the 3D view behind the guards, of which its package knows nothing."""
-    watch = Policy(access=WATCH_STAGE)
+    watch = RoutePolicy(access=WATCH_STAGE)
     routes: list[BaseRoute] = []
     for route in viewer_routes(_serve_viewer):
         if isinstance(route, Route):

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.api.cookies import NAME
 from app.api.event_answers import event_bodies
 from app.api.identity import IdentityProvider
-from app.api.policy import Access, Policy, policies
+from app.api.policy import Access, RoutePolicy, policies
 from app.api.problems import MEDIA_TYPE
 from app.feature import Feature
 from app.settings import Settings
@@ -172,7 +172,7 @@ def install(
 def _completed(
     schema: Schema,
     features: tuple[type[Feature], ...],
-    by_operation: Mapping[tuple[str, str], Policy],
+    by_operation: Mapping[tuple[str, str], RoutePolicy],
 ) -> Schema:
     components = schema.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
@@ -205,7 +205,7 @@ def operations(schema: Schema) -> Iterator[tuple[str, str, Schema]]:
                 yield method, path, methods[method]
 
 
-def problems_of(operation: Mapping[str, Any], policy: Policy) -> set[int]:
+def problems_of(operation: Mapping[str, Any], policy: RoutePolicy) -> set[int]:
     """Return the error statuses of an operation, by its policy, parameters and body."""
     # From what is before all routes (wrong hosts, too many wrong tokens, no free slot), from the
     # store, and from defects.
@@ -251,7 +251,7 @@ def _link_runs(schema: Schema) -> None:
 
 def _add_security(
     schema: Schema,
-    by_operation: Mapping[tuple[str, str], Policy],
+    by_operation: Mapping[tuple[str, str], RoutePolicy],
     settings: Settings,
     providers: Sequence[IdentityProvider],
 ) -> None:

@@ -10,7 +10,7 @@ from app.active_features import Features
 from app.api.auth import TokenGuard
 from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.memory_limit import BodyMemoryLimit
-from app.api.policy import Policy
+from app.api.policy import RoutePolicy
 from app.api.rate_limit import RateLimit
 from app.settings import Settings
 
@@ -44,7 +44,7 @@ class RouteGuards:
         self._first = TokenGuard(counted, settings, features)
 
     async def __call__(
-        self, policy: Policy, route: ASGIApp, scope: Scope, receive: Receive, send: Send
+        self, policy: RoutePolicy, route: ASGIApp, scope: Scope, receive: Receive, send: Send
     ) -> None:
         """Call a route if all guards let the request pass, or refuse it."""
         scope["state"].update(policy=policy, guarded_route=route)

@@ -20,7 +20,7 @@ from starlette.types import Scope
 
 from app.api.compression import CompressedContent
 from app.api.deps import PageFiles, Services
-from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, Policy, policy
+from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, RoutePolicy, policy
 from app.api.problem_pages import prefers_html
 from app.api.problems import as_sentence, problem
 from app.storage.errors import NotFound
@@ -47,7 +47,7 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
     index = page_content(_INDEX, page_files)
     left_out = [page_files.folder / "features" / name for name in page_files.without]
     files = _Files(page_files.folder, left_out)
-    public = Policy(access=PUBLIC)
+    public = RoutePolicy(access=PUBLIC)
 
     @policy(access=PUBLIC, opens_session=True)
     async def show(request: Request) -> Response:

@@ -78,7 +78,7 @@ of them."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Policy:
+class RoutePolicy:
     """Attributes of a route that the guards read.
 
     Attributes:
@@ -100,7 +100,7 @@ class Policy:
     depends_on_state: bool = True
 
 
-Guards = Callable[[Policy, ASGIApp, Scope, Receive, Send], Awaitable[None]]
+Guards = Callable[[RoutePolicy, ASGIApp, Scope, Receive, Send], Awaitable[None]]
 """Calls an app for a request if all guards let it pass, or refuses it."""
 
 
@@ -125,7 +125,7 @@ def policy(
 ) -> Callable[[E], E]:
     """Put a policy on an endpoint; the arguments are those of `Policy`."""
     return with_policy(
-        Policy(
+        RoutePolicy(
             access=access,
             work=work,
             starts=starts,
@@ -136,7 +136,7 @@ def policy(
     )
 
 
-def with_policy(of_route: Policy) -> Callable[[E], E]:
+def with_policy(of_route: RoutePolicy) -> Callable[[E], E]:
     """Put a policy that there is on an endpoint."""
 
     def put(endpoint: E) -> E:
@@ -146,23 +146,23 @@ def with_policy(of_route: Policy) -> Callable[[E], E]:
     return put
 
 
-def _policy_on(endpoint: object, path: str) -> Policy:
-    on_endpoint: Policy | None = getattr(endpoint, _ATTRIBUTE, None)
+def _policy_on(endpoint: object, path: str) -> RoutePolicy:
+    on_endpoint: RoutePolicy | None = getattr(endpoint, _ATTRIBUTE, None)
     if on_endpoint is None:
         raise MissingPolicy(path)
     return on_endpoint
 
 
-def policy_without_route(scope: Scope) -> Policy:
+def policy_without_route(scope: Scope) -> RoutePolicy:
     """Return the policy of a path without a route, and of a method that its route does not have."""
     if scope["type"] == "websocket" or scope["method"] in READ_METHODS:
-        return Policy(access=WATCH)
-    return Policy(access=OPERATOR, starts=scope["method"] == "POST")
+        return RoutePolicy(access=WATCH)
+    return RoutePolicy(access=OPERATOR, starts=scope["method"] == "POST")
 
 
-def policy_of(scope: Scope) -> Policy:
+def policy_of(scope: Scope) -> RoutePolicy:
     """Return the policy of a request; to be called inside the guards."""
-    of_route: Policy = scope["state"]["policy"]
+    of_route: RoutePolicy = scope["state"]["policy"]
     return of_route
 
 
@@ -179,7 +179,7 @@ def work_of(scope: Scope) -> Work:
 
 
 async def _guard(
-    of_route: Policy, app: ASGIApp, scope: Scope, receive: Receive, send: Send
+    of_route: RoutePolicy, app: ASGIApp, scope: Scope, receive: Receive, send: Send
 ) -> None:
     guards: Guards = scope["app"].state.guards
     await guards(of_route, app, scope, receive, send)
@@ -214,7 +214,11 @@ class GuardedPage(Route):
     """
 
     def __init__(
-        self, path: str, endpoint: Callable[..., Any], policy: Policy | None = None, **options: Any
+        self,
+        path: str,
+        endpoint: Callable[..., Any],
+        policy: RoutePolicy | None = None,
+        **options: Any,
     ) -> None:
         """Create a route.
 
@@ -242,7 +246,9 @@ class GuardedFiles(Mount):
         policy: of reading its files.
     """
 
-    def __init__(self, path: str, app: ASGIApp, policy: Policy, name: str | None = None) -> None:
+    def __init__(
+        self, path: str, app: ASGIApp, policy: RoutePolicy, name: str | None = None
+    ) -> None:
         """Serve an app, such as static files, below a path."""
         self.policy = policy
         super().__init__(path, app, name=name)
@@ -262,7 +268,7 @@ class GuardedSocket(WebSocketRoute):
     """
 
     def __init__(
-        self, path: str, endpoint: Callable[..., Any], policy: Policy, name: str | None = None
+        self, path: str, endpoint: Callable[..., Any], policy: RoutePolicy, name: str | None = None
     ) -> None:
         """Create a route."""
         self.policy = policy
@@ -273,7 +279,7 @@ class GuardedSocket(WebSocketRoute):
         await _guard(self.policy, super().handle, scope, receive, send)
 
 
-def _policy_for(route: GuardedRoute | GuardedPage, scope: Scope) -> Policy:
+def _policy_for(route: GuardedRoute | GuardedPage, scope: Scope) -> RoutePolicy:
     """Return the policy of a request that matches a route by its path."""
     has_method = route.methods is None or scope["method"] in route.methods
     return route.policy if has_method else policy_without_route(scope)
@@ -331,9 +337,9 @@ def _is_guarded(route: BaseRoute, app: FastAPI) -> bool:
     return is_page and any(route is route_ for route_ in app.routes)
 
 
-def policies(app: FastAPI) -> dict[tuple[str, str], Policy]:
+def policies(app: FastAPI) -> dict[tuple[str, str], RoutePolicy]:
     """Return the policies of all routes, by method in lower case and path."""
-    by_operation: dict[tuple[str, str], Policy] = {}
+    by_operation: dict[tuple[str, str], RoutePolicy] = {}
     for context in iter_route_contexts(app.routes):
         route = context.original_route
         if isinstance(route, GuardedFiles):

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import IO
 
 from hexapods.benchmarking.config import BenchmarkConfig
-from hexapods.benchmarking.runs import Run, RunResult
+from hexapods.benchmarking.runs import BenchmarkResult, BenchmarkRun
 from hexapods.benchmarking.score_file import config_of, decode, results_of
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.records import to_json
@@ -32,10 +32,10 @@ class KeptRuns:
             path: of the file.
             file: to which results are appended; None for none.
         """
-        self.results: dict[Run, RunResult] = {}
+        self.results: dict[BenchmarkRun, BenchmarkResult] = {}
         self._path, self._file = path, file
 
-    def add(self, run: Run, result: RunResult) -> None:
+    def add(self, run: BenchmarkRun, result: BenchmarkResult) -> None:
         """Add the result of a run, and write it at once."""
         self.results[run] = result
         if self._file is not None:
@@ -83,7 +83,7 @@ def kept_runs(score_file: Path | None, config: BenchmarkConfig) -> Iterator[Kept
         yield kept
 
 
-def _scored(path: Path, config: BenchmarkConfig) -> dict[Run, RunResult]:
+def _scored(path: Path, config: BenchmarkConfig) -> dict[BenchmarkRun, BenchmarkResult]:
     """Return the runs of a score file.
 
     Raises:
@@ -116,7 +116,7 @@ def _read(file: IO[bytes], path: Path, config: BenchmarkConfig, kept: KeptRuns) 
         is_same = head["config"] == json.loads(json.dumps(_same_in_all(config)))
         differs = difference(versions(), head["versions"])
         for task, budget, number, distance_m, error in rows:
-            kept.results[Run(task, budget, number)] = RunResult(distance_m, error)
+            kept.results[BenchmarkRun(task, budget, number)] = BenchmarkResult(distance_m, error)
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile(f"{path} cannot be read ({error}); {other}") from error
     if not is_same:

@@ -39,7 +39,7 @@ class BestKnown:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task:
+class BenchmarkTask:
     """A walking problem of a protocol.
 
     Attributes:
@@ -98,7 +98,7 @@ class Protocol:
     """
 
     name: str
-    tasks: Mapping[str, Task]
+    tasks: Mapping[str, BenchmarkTask]
     budgets: tuple[int, ...]
     seeds: int
     tolerance: float
@@ -127,7 +127,7 @@ def protocol(name: str) -> Protocol:
     )
 
 
-def tasks_of(chosen: Protocol, names: Sequence[str] | None) -> list[Task]:
+def tasks_of(chosen: Protocol, names: Sequence[str] | None) -> list[BenchmarkTask]:
     """Return tasks of a protocol by their names, in the protocol's order; None for all.
 
     Raises:
@@ -139,9 +139,9 @@ def tasks_of(chosen: Protocol, names: Sequence[str] | None) -> list[Task]:
     return [task for name, task in chosen.tasks.items() if names is None or name in names]
 
 
-def _task(row: Mapping[str, Any]) -> Task:
+def _task(row: Mapping[str, Any]) -> BenchmarkTask:
     parts = {name: row.get(name) for name in ("robot", "gait", "world", "drawn")}
-    return Task(
+    return BenchmarkTask(
         name=row["name"],
         title=row["title"],
         best_known=BestKnown(**row["best_known"]),

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hexapods.agents.registry import check_problem, find, parameter_names
 from hexapods.assembly import build_simulator
 from hexapods.benchmarking.config import BenchmarkConfig
-from hexapods.benchmarking.protocol import PLAIN_SEED, BestKnown, Task, tasks_of
+from hexapods.benchmarking.protocol import PLAIN_SEED, BenchmarkTask, BestKnown, tasks_of
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.text import message
@@ -24,7 +24,7 @@ _LEAGUE = 0
 """Spawn key of the trials' seeds: robots are those of a league of the same root seed."""
 
 
-class Run(NamedTuple):
+class BenchmarkRun(NamedTuple):
     """A run of a benchmark.
 
     Attributes:
@@ -38,7 +38,7 @@ class Run(NamedTuple):
     number: int
 
 
-class RunResult(NamedTuple):
+class BenchmarkResult(NamedTuple):
     """Result of a run.
 
     Attributes:
@@ -61,7 +61,7 @@ class TaskPlan:
         error: why the agent cannot walk it; None if it can.
     """
 
-    task: Task
+    task: BenchmarkTask
     walk: WalkingProblem
     error: str | None = None
 
@@ -71,7 +71,7 @@ def plan_tasks(config: BenchmarkConfig) -> list[TaskPlan]:
     return [_task_plan(config, task) for task in tasks_of(config.chosen, config.tasks)]
 
 
-def _task_plan(config: BenchmarkConfig, task: Task) -> TaskPlan:
+def _task_plan(config: BenchmarkConfig, task: BenchmarkTask) -> TaskPlan:
     walk = task.walk(config.seed, config.chosen.tolerance)
     check_reach(walk.robot, walk.resolved_gait, walk.grid)
     try:
@@ -81,7 +81,7 @@ def _task_plan(config: BenchmarkConfig, task: Task) -> TaskPlan:
     return TaskPlan(task, walk)
 
 
-def _trial(config: BenchmarkConfig, plan: TaskPlan, runs: Sequence[Run]) -> Trial:
+def _trial(config: BenchmarkConfig, plan: TaskPlan, runs: Sequence[BenchmarkRun]) -> Trial:
     """Return the trial of runs of a task that differ in their budget only, ascending."""
     budgets = tuple(run.budget for run in runs)
     number = runs[0].number
@@ -111,10 +111,10 @@ def _training(config: BenchmarkConfig, walk: WalkingProblem, budget: int) -> Tra
     )
 
 
-def runs_of(config: BenchmarkConfig) -> list[Run]:
+def runs_of(config: BenchmarkConfig) -> list[BenchmarkRun]:
     """Return all runs: every task and budget with the first seed, then with the next one."""
     return [
-        Run(task, budget, number)
+        BenchmarkRun(task, budget, number)
         for number in range(config.seeds)
         for task in config.tasks
         for budget in config.budgets
@@ -124,10 +124,10 @@ def runs_of(config: BenchmarkConfig) -> list[Run]:
 def run_all(
     config: BenchmarkConfig,
     plans: Iterable[TaskPlan],
-    runs: Iterable[Run],
+    runs: Iterable[BenchmarkRun],
     spec: ClusterSpec,
     may_continue: Callable[[], bool] = lambda: True,
-) -> Generator[tuple[Run, RunResult], None, None]:
+) -> Generator[tuple[BenchmarkRun, BenchmarkResult], None, None]:
     """Run some runs of a benchmark on worker processes, and yield each with its result.
 
     An agent that raises or ends its process, and physics that diverges, is a result with an error.
@@ -143,13 +143,13 @@ def run_all(
         ClusterLost: if no worker can be started.
     """
     by_name = {plan.task.name: plan for plan in plans}
-    possible: list[Run] = []
+    possible: list[BenchmarkRun] = []
     for run in runs:
         reason = by_name[run.task].error
         if reason is None:
             possible.append(run)
         else:
-            yield run, RunResult(0.0, reason)
+            yield run, BenchmarkResult(0.0, reason)
     batches = _practised_together(possible) if _ignores_length(config) else [[r] for r in possible]
     while batches:
         trials = [_trial(config, by_name[batch[0].task], batch) for batch in batches]
@@ -174,23 +174,23 @@ def _ignores_length(config: BenchmarkConfig) -> bool:
     return config.learns and "steps" not in parameter_names(find(config.agent))
 
 
-def _practised_together(runs: Iterable[Run]) -> list[list[Run]]:
+def _practised_together(runs: Iterable[BenchmarkRun]) -> list[list[BenchmarkRun]]:
     """Return runs by task and seed, each with its budgets ascending."""
-    by_practice: dict[tuple[str, int], list[Run]] = {}
+    by_practice: dict[tuple[str, int], list[BenchmarkRun]] = {}
     for run in sorted(runs, key=lambda run: (run.number, run.budget)):
         by_practice.setdefault((run.task, run.number), []).append(run)
     return list(by_practice.values())
 
 
-def _results(outcome: Outcome, count: int) -> list[RunResult] | None:
+def _results(outcome: Outcome, count: int) -> list[BenchmarkResult] | None:
     """Return the results of a trial's runs; None if it failed, and has more than one."""
     done = outcome.result
     failure = outcome.set_aside if done is None else done.failure
     if done is not None and failure is None:
-        return [RunResult(distance_m) for distance_m in done.distances_m]
+        return [BenchmarkResult(distance_m) for distance_m in done.distances_m]
     if count > 1:
         return None
-    return [RunResult(0.0, message(failure or "it has no result"))]
+    return [BenchmarkResult(0.0, message(failure or "it has no result"))]
 
 
 def best_known_of(config: BenchmarkConfig, plan: TaskPlan, threads: int = 1) -> BestKnown:

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 
 from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import PLAIN_SEED, PROTOCOLS, BestKnown
-from hexapods.benchmarking.runs import Run, RunResult, TaskPlan
+from hexapods.benchmarking.runs import BenchmarkResult, BenchmarkRun, TaskPlan
 from hexapods.benchmarking.scores import scores_of
 from hexapods.domain.checks import check_format
 from hexapods.domain.errors import DamagedFile, HexapodError, OtherFormat, UnknownName
@@ -30,7 +30,7 @@ HEAD = _ROW.format("agent", "protocol", "seeds", "score", "by steps of practice"
 def score_content(
     config: BenchmarkConfig,
     plans: Sequence[TaskPlan],
-    results: Mapping[Run, RunResult],
+    results: Mapping[BenchmarkRun, BenchmarkResult],
     best_known: Mapping[str, BestKnown | str],
 ) -> dict[str, Any]:
     """Return the content of a score file; arguments as of `scores_of`."""
@@ -115,7 +115,7 @@ def config_of(content: Mapping[str, Any]) -> BenchmarkConfig:
     return from_json(BenchmarkConfig, json.dumps(plain).encode(), strict=True)
 
 
-def results_of(content: Mapping[str, Any]) -> dict[Run, RunResult]:
+def results_of(content: Mapping[str, Any]) -> dict[BenchmarkRun, BenchmarkResult]:
     """Return the results of a score file by run.
 
     Raises:
@@ -126,9 +126,9 @@ def results_of(content: Mapping[str, Any]) -> dict[Run, RunResult]:
         errors = {(error["steps"], error["seed"]): str(error["error"]) for error in task["errors"]}
         for entry in task["budgets"]:
             for number, distance_m in enumerate(entry["distances_m"]):
-                run = Run(str(task["name"]), int(entry["steps"]), number)
+                run = BenchmarkRun(str(task["name"]), int(entry["steps"]), number)
                 reason = errors.get((run.budget, number))
-                results[run] = RunResult(float(distance_m), reason)
+                results[run] = BenchmarkResult(float(distance_m), reason)
     return results
 
 

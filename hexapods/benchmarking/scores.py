@@ -12,7 +12,7 @@ import numpy as np
 
 from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import BestKnown
-from hexapods.benchmarking.runs import Run, RunResult, TaskPlan
+from hexapods.benchmarking.runs import BenchmarkResult, BenchmarkRun, TaskPlan
 from hexapods.domain.records import to_json
 from hexapods.domain.types import FloatArray
 from hexapods.experiments.statistics import Interval, interval, iqm
@@ -37,7 +37,7 @@ def score_of(distance_m: float, best_known_m: float) -> float:
 def scores_of(
     config: BenchmarkConfig,
     plans: Sequence[TaskPlan],
-    results: Mapping[Run, RunResult],
+    results: Mapping[BenchmarkRun, BenchmarkResult],
     best_known: Mapping[str, BestKnown | str],
 ) -> dict[str, Any]:
     """Return the tasks with their scores, and the aggregate, as a score file has them.
@@ -53,7 +53,7 @@ def scores_of(
     for plan in plans:
         name = plan.task.name
         of_task = [
-            [results[Run(name, budget, number)] for number in range(config.seeds)]
+            [results[BenchmarkRun(name, budget, number)] for number in range(config.seeds)]
             for budget in config.budgets
         ]
         best = best_known[name]
@@ -95,7 +95,7 @@ def _aggregate(config: BenchmarkConfig, strata: Sequence[FloatArray]) -> dict[st
 
 
 def _errors(
-    config: BenchmarkConfig, of_task: Sequence[Sequence[RunResult]], best: BestKnown | str
+    config: BenchmarkConfig, of_task: Sequence[Sequence[BenchmarkResult]], best: BestKnown | str
 ) -> list[dict[str, Any]]:
     """Return why runs failed: steps, number of the seed, and the error; both None for the task."""
     errors: list[dict[str, Any]] = [

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hexapods.benchmarking.runs import (
-    Run,
-    RunResult,
+    BenchmarkResult,
+    BenchmarkRun,
     all_best_known,
     plan_tasks,
     run_all,
@@ -27,7 +27,7 @@ LAST_DIGITS = 1e-6
 _SAMPLING_SEED = 0
 
 
-class Verification(NamedTuple):
+class BenchmarkVerification(NamedTuple):
     """Outcome of repeating a benchmark.
 
     Attributes:
@@ -46,7 +46,7 @@ def verification(
     workers: int | None = None,
     sample: int | None = None,
     on_run: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
-) -> Verification:
+) -> BenchmarkVerification:
     """Repeat the runs of a score file, compute its scores again, and return what differs.
 
     Args:
@@ -64,12 +64,12 @@ def verification(
     spec, plans, runs = ClusterSpec(workers=workers), plan_tasks(config), runs_of(config)
     if set(in_file) != set(runs):
         count = f"The file has {len(in_file):,} runs; its benchmark has {len(runs):,}."
-        return Verification(0, [count], False)
+        return BenchmarkVerification(0, [count], False)
     if sample is not None:
         check_whole("sample", sample, 1, len(runs))
         rng = np.random.default_rng(_SAMPLING_SEED)
         runs = [runs[place] for place in sorted(rng.choice(len(runs), sample, replace=False))]
-    repeated: dict[Run, RunResult] = {}
+    repeated: dict[BenchmarkRun, BenchmarkResult] = {}
     for run, result in run_all(config, plans, runs, spec):
         repeated[run] = result
         on_run(len(repeated), len(runs))
@@ -82,7 +82,7 @@ def verification(
     again = score_content(config, plans, in_file, all_best_known(config, plans, workers or cores()))
     scores = list(_score_differences(content, again))
     is_rounding = is_rounding and all(of_rounding for _, of_rounding in scores)
-    return Verification(
+    return BenchmarkVerification(
         len(repeated), sentences + [sentence for sentence, _ in scores], is_rounding
     )
 
@@ -123,17 +123,17 @@ def _unequal(place: str, before: Any, after: Any) -> Iterator[tuple[str, Any, An
         yield visible(place), before, after
 
 
-def _differs_by_rounding(before: RunResult, after: RunResult) -> bool:
+def _differs_by_rounding(before: BenchmarkResult, after: BenchmarkResult) -> bool:
     return (
         before.error == after.error and abs(before.distance_m - after.distance_m) <= LAST_DIGITS_M
     )
 
 
-def _name(run: Run) -> str:
+def _name(run: BenchmarkRun) -> str:
     return f"{run.task}, {run.budget} steps, seed {run.number}"
 
 
-def _text(result: RunResult) -> str:
+def _text(result: BenchmarkResult) -> str:
     if result.error is not None:
         return f"failed ({visible(result.error)})"
     return f"{result.distance_m!r} m"

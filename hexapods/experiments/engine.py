@@ -9,9 +9,9 @@ from hexapods.domain.sums import ordered_sum
 from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.worker import (
+    BatchFuture,
     ClusterLost,
     Outcome,
-    Task,
     VersionMismatch,
     WorkerDied,
     Workers,
@@ -88,8 +88,8 @@ class _Engine:
     def __init__(self, workers: Workers, may_continue: Callable[[], bool]) -> None:
         self._workers, self._may_continue = workers, may_continue
         self._batches = _BatchSizer()
-        self._in_flight: dict[Task, list[Trial]] = {}
-        self._ended_tasks: queue.SimpleQueue[Task] = queue.SimpleQueue()
+        self._in_flight: dict[BatchFuture, list[Trial]] = {}
+        self._ended_tasks: queue.SimpleQueue[BatchFuture] = queue.SimpleQueue()
         self._suspects: list[Trial] = []
         self._count, self._counted_s = 0, -_WORKER_COUNT_S
         self._without_workers_since_s: float | None = None
@@ -149,7 +149,7 @@ class _Engine:
         self._in_flight[task] = batch
         task.add_done_callback(self._ended_tasks.put)
 
-    def _next_ended(self) -> Task | None:
+    def _next_ended(self) -> BatchFuture | None:
         """Wait for the next task that ends; None if the run shall end."""
         while self._may_continue():
             try:
@@ -158,7 +158,7 @@ class _Engine:
                 self._check_workers()
         return None
 
-    def _outcomes(self, ended: Task, batch: list[Trial]) -> list[Outcome]:
+    def _outcomes(self, ended: BatchFuture, batch: list[Trial]) -> list[Outcome]:
         try:
             done = self._workers.result(ended)
         except (WorkerDied, ClusterLost, VersionMismatch):

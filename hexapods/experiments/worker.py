@@ -58,7 +58,7 @@ class Outcome(NamedTuple):
         return cls(str(row["key"]), result, row["set_aside"], float(row["compute_s"]))
 
 
-class Task(Protocol):
+class BatchFuture(Protocol):
     """A batch of trials that is being computed: a future, as Python's or Dask's."""
 
     def add_done_callback(self, function: Callable[[Any], None], /) -> None:
@@ -71,7 +71,7 @@ class Workers(Protocol):
     def count(self) -> int:
         """Return how many tasks they compute at once; raises ClusterLost if they are lost."""
 
-    def submit(self, trials: Sequence[Trial]) -> Task:
+    def submit(self, trials: Sequence[Trial]) -> BatchFuture:
         """Let a worker run a batch of trials."""
 
     def result(self, task: Any) -> list[Outcome]:

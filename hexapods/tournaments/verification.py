@@ -35,7 +35,7 @@ LAST_DIGITS_M = 1e-9
 """Distances that differ by no more differ by rounding: after 50 steps by less than a femtometre."""
 
 
-class Verification(NamedTuple):
+class TournamentVerification(NamedTuple):
     """Outcome of repeating a tournament.
 
     Attributes:
@@ -63,7 +63,7 @@ def verification(
     tournament: TournamentFile,
     workers: int | None = None,
     on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
-) -> Verification:
+) -> TournamentVerification:
     """Repeat a tournament, and return what differs.
 
     Its secret is compared with its commitment, the references with those of every tournament, each
@@ -84,7 +84,7 @@ def verification(
     try:
         draws = draws_of(tournament.rules, tournament.secret)
     except InvalidInput as error:
-        return Verification([f"The draws cannot be repeated: {error}."], None, None)
+        return TournamentVerification([f"The draws cannot be repeated: {error}."], None, None)
     differences = [*_secret_differences(tournament), *_reference_differences(tournament)]
     tables: dict[int, Checkpoint | None] = {}
     for entry in tournament.entries:
@@ -113,7 +113,7 @@ def verification(
     rounding = None
     if differences and largest_m is not None and largest_m <= LAST_DIGITS_M:
         rounding = _rounding(tournament, largest_m, draws[0])
-    return Verification(differences, rounding, ranks_hold)
+    return TournamentVerification(differences, rounding, ranks_hold)
 
 
 def _ranks_hold(tournament: TournamentFile, repeated: Repeated) -> bool | None:

@@ -11,7 +11,7 @@ from app.api.concurrency_limit import (
     ConcurrencyLimit,
     WorkSlots,
 )
-from app.api.policy import QUESTION, WATCH, Policy, policies, work_of
+from app.api.policy import QUESTION, WATCH, RoutePolicy, policies, work_of
 from app.api.work import ENCODING, OTHER, PROBE, Slots, Work
 from app.limits.connections import ConnectionTable
 from app.server import create_app
@@ -22,16 +22,16 @@ from tests.features.needing import needs
 from tests.storage.stores import temporary_store
 
 STOP = "/api/v1/trainings/x/stop"
-READ, PROBED = Policy(access=WATCH), Policy(access=WATCH, work=PROBE)
-FILE = Policy(access=WATCH, work=ENCODING)
+READ, PROBED = RoutePolicy(access=WATCH), RoutePolicy(access=WATCH, work=PROBE)
+FILE = RoutePolicy(access=WATCH, work=ENCODING)
 SINGLE = Work(name="question", spectators=Slots(1, 1), operators=None)
 """As a feature may define one."""
-ASKED = Policy(access=QUESTION, work=SINGLE)
+ASKED = RoutePolicy(access=QUESTION, work=SINGLE)
 READING = OTHER.spectators.size
 
 
 def scope(
-    role: str, address: str, method: str = "GET", path: str = "/", policy: Policy = READ
+    role: str, address: str, method: str = "GET", path: str = "/", policy: RoutePolicy = READ
 ) -> Scope:
     request = {"type": "http", "method": method, "path": path, "query_string": b""}
     return {**request, "state": admitted(role, policy), "client": (address, 1)}

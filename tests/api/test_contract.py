@@ -22,7 +22,7 @@ from app.api.deps import EventListener, Services
 from app.api.event_answers import event_bodies, stage_view
 from app.api.events import get_events
 from app.api.options import options_view
-from app.api.policy import OPERATOR, PUBLIC, WATCH_RUN, MissingPolicy, Policy, policies, policy
+from app.api.policy import OPERATOR, PUBLIC, WATCH_RUN, MissingPolicy, RoutePolicy, policies, policy
 from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.run_views import RunPage
@@ -97,15 +97,15 @@ def test_every_operation_describes_all_its_responses(
 def test_the_policy_says_with_which_statuses_a_route_can_refuse() -> None:
     of_run = {"parameters": [{"name": "run_id", "in": "path"}]}
     always = {400, 403, 429, 500, 503}
-    assert problems_of({}, Policy(access=PUBLIC)) == always
-    assert problems_of(of_run, Policy(access=WATCH_RUN)) == always | {401, 404, 409, 422}
-    itself = Policy(access=WATCH_RUN, depends_on_state=False)
+    assert problems_of({}, RoutePolicy(access=PUBLIC)) == always
+    assert problems_of(of_run, RoutePolicy(access=WATCH_RUN)) == always | {401, 404, 409, 422}
+    itself = RoutePolicy(access=WATCH_RUN, depends_on_state=False)
     assert problems_of(of_run, itself) == always | {401, 404, 422}
     changed = always | {401, 409, 422, 507}
-    assert problems_of({}, Policy(access=OPERATOR)) == changed
+    assert problems_of({}, RoutePolicy(access=OPERATOR)) == changed
     with_body = {"requestBody": {}, "parameters": [{"name": "idempotency-key", "in": "header"}]}
-    assert problems_of(with_body, Policy(access=OPERATOR)) == changed | {404, 413, 415}
-    starts = Policy(access=OPERATOR, starts=True)
+    assert problems_of(with_body, RoutePolicy(access=OPERATOR)) == changed | {404, 413, 415}
+    starts = RoutePolicy(access=OPERATOR, starts=True)
     assert problems_of(with_body, starts) == changed | {404, 410, 413, 415}
 
 

@@ -13,7 +13,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.memory_limit import ANSWERS_SHARE_BYTES, BODIES_SHARE_BYTES, BodyMemoryLimit
-from app.api.policy import PUBLIC, Policy
+from app.api.policy import PUBLIC, RoutePolicy
 from tests.api.guarding import admitted
 
 MB = 1 << 20
@@ -36,7 +36,7 @@ class AsOperator:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http":
             takes_file = scope["path"].endswith("import")
-            scope["state"] = admitted("operator", Policy(access=PUBLIC, takes_file=takes_file))
+            scope["state"] = admitted("operator", RoutePolicy(access=PUBLIC, takes_file=takes_file))
         await self._app(scope, receive, send)
 
 

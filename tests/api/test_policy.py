@@ -16,7 +16,7 @@ from app.api.policy import (
     Access,
     GuardedPage,
     MissingPolicy,
-    Policy,
+    RoutePolicy,
     api_router,
     guard_everything,
     policies,
@@ -45,13 +45,13 @@ def small_app() -> FastAPI:
     return app
 
 
-def asked(app: FastAPI, method: str, path: str) -> tuple[list[Policy], int, int]:
+def asked(app: FastAPI, method: str, path: str) -> tuple[list[RoutePolicy], int, int]:
     """Return the policies that guards got for a request, its status, and how often it was read."""
-    seen: list[Policy] = []
+    seen: list[RoutePolicy] = []
     reads, statuses = 0, [0]
 
     async def refuse_operators(
-        policy: Policy, route: ASGIApp, scope: Scope, receive: Receive, send: Send
+        policy: RoutePolicy, route: ASGIApp, scope: Scope, receive: Receive, send: Send
     ) -> None:
         seen.append(policy)
         refused = policy.access is OPERATOR
@@ -117,7 +117,7 @@ def test_no_route_is_added_without_a_policy() -> None:
 
 def test_a_page_below_a_router_is_refused_since_it_would_not_be_guarded() -> None:
     router = api_router()
-    router.routes.append(GuardedPage("/page", lambda request: None, Policy(access=PUBLIC)))
+    router.routes.append(GuardedPage("/page", lambda request: None, RoutePolicy(access=PUBLIC)))
     app = FastAPI(openapi_url=None)
     app.include_router(router)
     with pytest.raises(MissingPolicy, match="/page"):

@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any
 
 from hexapods.benchmarking.config import BenchmarkConfig, benchmark_config
-from hexapods.benchmarking.runs import Run, RunResult
+from hexapods.benchmarking.runs import BenchmarkResult, BenchmarkRun
 from hexapods.benchmarks import Benchmark, run_benchmark
 from hexapods.experiments.cluster import ClusterSpec
 
@@ -24,10 +24,10 @@ def small_benchmark() -> Benchmark:
     return run_benchmark(small(), ClusterSpec(workers=1))
 
 
-def results(config: BenchmarkConfig, distance_m: float) -> dict[Run, RunResult]:
+def results(config: BenchmarkConfig, distance_m: float) -> dict[BenchmarkRun, BenchmarkResult]:
     """Return results of all runs of a benchmark, all as far."""
     return {
-        Run(task, budget, number): RunResult(distance_m)
+        BenchmarkRun(task, budget, number): BenchmarkResult(distance_m)
         for task in config.tasks
         for budget in config.budgets
         for number in range(config.seeds)

@@ -5,23 +5,26 @@ from pathlib import Path
 import pytest
 
 from hexapods.benchmarking.kept_runs import kept_runs
-from hexapods.benchmarking.runs import Run, RunResult
+from hexapods.benchmarking.runs import BenchmarkResult, BenchmarkRun
 from hexapods.benchmarking.score_file import encode
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from tests.benchmarking.sample_benchmarks import small, small_benchmark
 
 pytestmark = pytest.mark.test
 
-RUN = Run("tripod", 3, 0)
-RESULT = RunResult(0.1234567890123456)
+RUN = BenchmarkRun("tripod", 3, 0)
+RESULT = BenchmarkResult(0.1234567890123456)
 
 
 def test_what_was_kept_is_there_again_also_with_more_seeds(tmp_path: Path) -> None:
     with kept_runs(tmp_path / "s.json", small()) as kept:
         kept.add(RUN, RESULT)
-        kept.add(Run("tripod", 6, 0), RunResult(0.0, "it broke"))
+        kept.add(BenchmarkRun("tripod", 6, 0), BenchmarkResult(0.0, "it broke"))
     with kept_runs(tmp_path / "s.json", small(seeds=9)) as kept:
-        assert kept.results == {RUN: RESULT, Run("tripod", 6, 0): RunResult(0.0, "it broke")}
+        assert kept.results == {
+            RUN: RESULT,
+            BenchmarkRun("tripod", 6, 0): BenchmarkResult(0.0, "it broke"),
+        }
         kept.delete()
     assert not list(tmp_path.iterdir())
 
@@ -33,7 +36,7 @@ def test_a_line_that_was_not_written_whole_is_run_again(tmp_path: Path) -> None:
     file.write_bytes(file.read_bytes() + b'["tripod", 6')
     with kept_runs(tmp_path / "s.json", small()) as kept:
         assert kept.results == {RUN: RESULT}
-        kept.add(Run("tripod", 6, 1), RESULT)
+        kept.add(BenchmarkRun("tripod", 6, 1), RESULT)
     with kept_runs(tmp_path / "s.json", small()) as kept:
         assert len(kept.results) == 2
 
@@ -44,7 +47,7 @@ def test_runs_of_a_score_file_count(tmp_path: Path) -> None:
     with kept_runs(tmp_path / "s.json", small(seeds=9)) as kept:
         assert len(kept.results) == 6
         first = done.content["tasks"][0]["budgets"][0]["distances_m"][0]
-        assert kept.results[RUN] == RunResult(first)
+        assert kept.results[RUN] == BenchmarkResult(first)
 
 
 def test_runs_of_another_benchmark_are_refused(tmp_path: Path) -> None:

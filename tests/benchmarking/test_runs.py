@@ -7,8 +7,8 @@ import pytest
 from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import BestKnown
 from hexapods.benchmarking.runs import (
-    Run,
-    RunResult,
+    BenchmarkResult,
+    BenchmarkRun,
     TaskPlan,
     best_known_of,
     plan_tasks,
@@ -24,7 +24,9 @@ from tests.benchmarking.sample_benchmarks import small
 ONE_WORKER = ClusterSpec(workers=1)
 
 
-def done(config: BenchmarkConfig, runs: Sequence[Run] | None = None) -> dict[Run, RunResult]:
+def done(
+    config: BenchmarkConfig, runs: Sequence[BenchmarkRun] | None = None
+) -> dict[BenchmarkRun, BenchmarkResult]:
     return dict(run_all(config, plan_tasks(config), runs or runs_of(config), ONE_WORKER))
 
 
@@ -33,7 +35,7 @@ def test_a_run_is_a_training_from_scratch_that_then_walks_frozen() -> None:
     config = small(seeds=1, budgets=(6,))
     plans = plan_tasks(config)
     [(run, result)] = run_all(config, plans, runs_of(config), ONE_WORKER)
-    assert run == Run("tripod", 6, 0)
+    assert run == BenchmarkRun("tripod", 6, 0)
     trained = train(
         "q-learning",
         gait="tripod",
@@ -60,7 +62,7 @@ def test_one_practice_serves_all_budgets_of_an_agent_that_does_not_know_its_leng
 
 def test_an_agent_that_does_not_learn_walks_each_task_and_seed_once() -> None:
     config = small("wave", budgets=None, seeds=2)
-    assert runs_of(config) == [Run("tripod", 0, 0), Run("tripod", 0, 1)]
+    assert runs_of(config) == [BenchmarkRun("tripod", 0, 0), BenchmarkRun("tripod", 0, 1)]
     first, second = done(config).values()
     assert first.error is None
     assert first.distance_m != second.distance_m, "seeds draw robots"
@@ -79,7 +81,7 @@ def test_an_agent_that_breaks_late_keeps_what_it_walked_before() -> None:
     config = small("tests.own_agents:TiresLate", seeds=1, budgets=(2, 60))
     early, late = done(config).values()
     assert early.error is None
-    assert late == RunResult(0.0, late.error)
+    assert late == BenchmarkResult(0.0, late.error)
     assert "tired" in (late.error or "")
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from hexapods.benchmarking.protocol import BestKnown
-from hexapods.benchmarking.runs import RunResult, plan_tasks
+from hexapods.benchmarking.runs import BenchmarkResult, plan_tasks
 from hexapods.benchmarking.scores import score_of, scores_of
 from tests.benchmarking.sample_benchmarks import results, small
 
@@ -23,7 +23,7 @@ def test_tasks_and_aggregate_are_interquartile_means_over_all_runs() -> None:
     config = small(tasks=("tripod", "ice"), budgets=(3,), seeds=4)
     done, at_m = results(config, 0.0), count()
     for run in done:
-        done[run] = RunResult(0.05 * next(at_m))  # 0 to .15 m on the tripod, .2 to .35 on ice
+        done[run] = BenchmarkResult(0.05 * next(at_m))  # 0 to .15 m on the tripod, .2 to .35 on ice
     scored = scores_of(config, plan_tasks(config), done, {"tripod": KNOWN, "ice": KNOWN})
     tripod, ice = scored["tasks"]
     assert tripod["budgets"][0]["scores"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
@@ -39,7 +39,7 @@ def test_the_seeds_of_a_task_are_resampled_within_it() -> None:
     """Tasks of which each seed is alike have no interval, however different they are."""
     config = small(tasks=("tripod", "ice"), budgets=(3,), seeds=5)
     done = results(config, 0.1)
-    done |= {run: RunResult(0.5) for run in done if run.task == "ice"}
+    done |= {run: BenchmarkResult(0.5) for run in done if run.task == "ice"}
     scored = scores_of(config, plan_tasks(config), done, {"tripod": KNOWN, "ice": KNOWN})
     low, high = scored["aggregate"]["interval"]
     assert low == high == pytest.approx(scored["aggregate"]["score"])
@@ -48,7 +48,7 @@ def test_the_seeds_of_a_task_are_resampled_within_it() -> None:
 def test_the_profile_is_the_share_of_runs_that_reach_a_score() -> None:
     config = small(tasks=("tripod",), budgets=(3, 6), seeds=4)
     done = results(config, 0.0)
-    done |= {run: RunResult(0.5) for run in done if run.budget == 6}
+    done |= {run: BenchmarkResult(0.5) for run in done if run.budget == 6}
     profile = scores_of(config, plan_tasks(config), done, {"tripod": KNOWN})["aggregate"]["profile"]
     shares = {point["at"]: point["share"] for point in profile}
     assert shares[0.0] == 1.0
@@ -68,7 +68,7 @@ def test_what_fails_is_named_and_counts_as_0() -> None:
     config = small(budgets=(3,), seeds=4)
     done = results(config, 0.5)
     broken = next(iter(done))
-    done[broken] = RunResult(0.0, "it broke")
+    done[broken] = BenchmarkResult(0.0, "it broke")
     [task] = scores_of(config, plan_tasks(config), done, {"tripod": KNOWN})["tasks"]
     assert task["budgets"][0]["scores"] == [0.0, 1.0, 1.0, 1.0]
     assert task["errors"] == [{"steps": 3, "seed": 0, "error": "it broke"}]

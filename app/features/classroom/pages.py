@@ -10,7 +10,7 @@ from starlette.routing import BaseRoute
 from app.api.compression import CompressedContent
 from app.api.deps import Services
 from app.api.pages import page_of
-from app.api.policy import WATCH, GuardedPage, Policy, policy
+from app.api.policy import WATCH, GuardedPage, RoutePolicy, policy
 from app.api.problems import as_sentence, problem
 from app.features.classroom.access import BY_CODE
 from app.features.classroom.lessons import Lessons
@@ -31,7 +31,7 @@ def routes(page: CompressedContent) -> list[BaseRoute]:
     show_room = page_of(page, lambda services, params: services.of(Rooms).get(params["code"]))
     return [
         GuardedPage("/l/{lesson_id}", _lesson, name="lesson_page"),
-        GuardedPage("/r/{code}", show_room, Policy(access=BY_CODE), name="room_page"),
+        GuardedPage("/r/{code}", show_room, RoutePolicy(access=BY_CODE), name="room_page"),
         GuardedPage("/r/{code}/", _room, name="room_stage"),
     ]
 

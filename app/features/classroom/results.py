@@ -24,7 +24,7 @@ SCORES = tuple(field.name for field in fields(Score))
 """Names of the figures of a score."""
 
 
-class RunResult(NamedTuple):
+class ParticipantResult(NamedTuple):
     """A participant's run on a card, or what-if.
 
     Attributes:
@@ -63,7 +63,7 @@ class Entry(NamedTuple):
     is_own: bool
     prediction: Any
     score: Score | None
-    run: RunResult | None
+    run: ParticipantResult | None
 
 
 @dataclass(frozen=True)
@@ -205,12 +205,12 @@ def _interval(distances_m: Sequence[float]) -> Interval:
     return iqm_interval((tuple(distances_m),), _SEED_OF_INTERVALS)
 
 
-def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | None:
+def _newest(room: Room, store: RunStore, seed: int, card: int) -> ParticipantResult | None:
     """Return what a participant started last on a card, of what is still there.
 
     One that has finished goes before one that has not.
     """
-    newest: RunResult | None = None
+    newest: ParticipantResult | None = None
     for room_run in room.runs_of(seed, card):
         result = _result(room, room_run, store)
         if result is not None and (
@@ -220,13 +220,13 @@ def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | No
     return newest
 
 
-def _result(room: Room, room_run: RoomRun, store: RunStore) -> RunResult | None:
-    finished: RunResult | None = room.finished.get(room_run.run_id)
+def _result(room: Room, room_run: RoomRun, store: RunStore) -> ParticipantResult | None:
+    finished: ParticipantResult | None = room.finished.get(room_run.run_id)
     if finished is not None:
         return finished  # a run that has finished changes no more, and a class asks again and again
     if room_run.answer is not None:
         outcome = WalkOutcome(room_run.answer["chosen"]["iqm_m"])
-        return RunResult(
+        return ParticipantResult(
             room_run.run_id,
             "what-if",
             "finished",
@@ -240,7 +240,9 @@ def _result(room: Room, room_run: RoomRun, store: RunStore) -> RunResult | None:
         return None  # deleted, or never stored
     if not isinstance(run, Run):
         return None
-    result = RunResult(run.id, run.kind, run.state, dict(room_run.given), _outcome(run, store))
+    result = ParticipantResult(
+        run.id, run.kind, run.state, dict(room_run.given), _outcome(run, store)
+    )
     if run.state == "finished":
         room.finished[room_run.run_id] = result
     return result

@@ -12,7 +12,7 @@ from app.features.classroom.lesson import Card, html_of
 from app.features.classroom.lesson_routes import lesson_view
 from app.features.classroom.lessons import FoundLesson
 from app.features.classroom.names import in_groups
-from app.features.classroom.results import CardResults, Entry, RunResult
+from app.features.classroom.results import CardResults, Entry, ParticipantResult
 from app.features.classroom.room import Room
 from app.features.classroom.room_stages import path_of_room
 from app.features.classroom.rooms import Rooms
@@ -127,7 +127,7 @@ def _entry(entry: Entry) -> dict[str, Any]:
     return {**shown, "run": None if run is None else _run(run, is_own=entry.is_own)}
 
 
-def _run(run: RunResult, *, is_own: bool) -> dict[str, Any]:
+def _run(run: ParticipantResult, *, is_own: bool) -> dict[str, Any]:
     return {
         "id": run.id,
         "kind": run.kind,

@@ -65,7 +65,7 @@ class _Cost(msgspec.Struct):
     wall_s: Seconds
 
 
-class _Head(msgspec.Struct):
+class _SummaryHead(msgspec.Struct):
     """Version of a summary's format."""
 
     format: int
@@ -166,7 +166,7 @@ def check_report_files(
     if SUMMARY not in files:
         return
     try:
-        head = msgspec.json.decode(files[SUMMARY], type=_Head)
+        head = msgspec.json.decode(files[SUMMARY], type=_SummaryHead)
         check_format(f"{SUMMARY} of {label}", head.format, SUMMARY_FORMAT)
         summary = msgspec.json.decode(files[SUMMARY], type=_Summary)
         if summary.experiment != run.config.experiment:

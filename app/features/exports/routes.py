@@ -11,7 +11,7 @@ from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import ServicesDep
 from app.api.fields import Declared
 from app.api.formats import attachment, negotiated
-from app.api.policy import OPERATOR, WATCH_RUN, Policy, api_router, with_policy
+from app.api.policy import OPERATOR, WATCH_RUN, RoutePolicy, api_router, with_policy
 from app.api.runs import RunPath
 from app.api.work import DOWNLOAD, ENCODING
 from app.features.exports.file_renderer import FileRenderer
@@ -56,11 +56,11 @@ def _query_of(export_format: ExportFormat) -> Callable[..., _Query]:
     return read
 
 
-_POLICIES: dict[Load, Policy] = {
-    "stream": Policy(access=WATCH_RUN, work=DOWNLOAD),
-    "encode": Policy(access=WATCH_RUN, work=ENCODING),
+_POLICIES: dict[Load, RoutePolicy] = {
+    "stream": RoutePolicy(access=WATCH_RUN, work=DOWNLOAD),
+    "encode": RoutePolicy(access=WATCH_RUN, work=ENCODING),
     # The renderer has slots of its own.
-    "render": Policy(access=OPERATOR, starts=True),
+    "render": RoutePolicy(access=OPERATOR, starts=True),
 }
 """By what a format costs a server."""
 

@@ -42,7 +42,7 @@ Arguments = dict[str, Any]
 _IMPORT = "import hexapods as hx"
 
 
-class RunCode(NamedTuple):
+class RunAsCode(NamedTuple):
     """A run as code."""
 
     command: str
@@ -58,7 +58,7 @@ class _Code(NamedTuple):
         return self.text
 
 
-def run_code(run: Run, store: RunStore, address: str) -> RunCode:
+def run_code(run: Run, store: RunStore, address: str) -> RunAsCode:
     """Return the code of a run.
 
     Args:
@@ -80,7 +80,7 @@ def run_code(run: Run, store: RunStore, address: str) -> RunCode:
     for config in filter(None, practices.configs):
         robots.add([config.robot])
     python = "\n\n".join([_IMPORT, *practices.calls]) + "\n"
-    return robots.before(RunCode(_lines(practices.commands), python))
+    return robots.before(RunAsCode(_lines(practices.commands), python))
 
 
 class _Robots:
@@ -99,7 +99,7 @@ class _Robots:
             if robot.id is not None:
                 self._names[robot.id] = as_mapping(robot)["name"]
 
-    def before(self, code: RunCode) -> RunCode:
+    def before(self, code: RunAsCode) -> RunAsCode:
         """Return the code with what makes the robots known before it."""
         commands, calls = "", ""
         for robot_id, name in self._names.items():
@@ -109,7 +109,7 @@ class _Robots:
                 f"hexapods robots import {file} --name {shlex.quote(name)}\n"
             )
             calls += f"\n\n# {url}\nhx.load_robot({file!r}, {name!r})"
-        return RunCode(commands + code.command, code.python.replace(_IMPORT, _IMPORT + calls, 1))
+        return RunAsCode(commands + code.command, code.python.replace(_IMPORT, _IMPORT + calls, 1))
 
 
 class _Practices:
@@ -368,7 +368,7 @@ def _lines(commands: Iterable[str]) -> str:
 _REPEATED = {"gaits": "--gait", "robots": "--robot", "agents": "--agent", "worlds": "--world"}
 
 
-def _experiment(config: ExperimentConfig) -> RunCode:
+def _experiment(config: ExperimentConfig) -> RunAsCode:
     name, given = config.experiment, _experiment_differences(config)
     options: list[tuple[str, str]] = []
     for key, value in given.items():
@@ -387,7 +387,7 @@ def _experiment(config: ExperimentConfig) -> RunCode:
         f"    experiment = {_indented(call)}\n"
         '    print(*experiment.settings, sep="\\n")\n'
     )
-    return RunCode(_lines([_command(program, options)]), python)
+    return RunAsCode(_lines([_command(program, options)]), python)
 
 
 def _part(value: Any) -> str:

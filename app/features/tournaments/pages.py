@@ -4,7 +4,7 @@ from starlette.routing import BaseRoute
 
 from app.api.compression import CompressedContent
 from app.api.pages import page_of
-from app.api.policy import GuardedPage, Policy
+from app.api.policy import GuardedPage, RoutePolicy
 from app.features.tournaments.access import WATCH_TOURNAMENT
 from app.features.tournaments.tournaments import Tournaments
 
@@ -18,5 +18,5 @@ def routes(page: CompressedContent) -> list[BaseRoute]:
     show = page_of(
         page, lambda services, params: services.of(Tournaments).get(params["tournament_id"])
     )
-    watch = Policy(access=WATCH_TOURNAMENT)
+    watch = RoutePolicy(access=WATCH_TOURNAMENT)
     return [GuardedPage("/t/{tournament_id}", show, watch, name="tournament_page")]
