@@ -3,8 +3,9 @@
 - `protocol` defines the interface of agents, built-in and user-supplied; `registry` finds agent
   classes by name, lists their settings, and creates agents; `appearance` has their titles,
   descriptions and colours.
-- `explanation` has the types and protocols by which learners explain their steps, and searches
-  what they found.
+- `explanation` has the types of explained steps, and the protocols of agents that explain
+  themselves; `derived_explanation` explains learners with a Q-table by what they know before and
+  after `learn`.
 - `tabular` has the base classes of learners with a Q-table. Those that learn from each step once
   derive from it: `q_learning` (paper, Algorithm 1), `double_q`, `sarsa`, `expected_sarsa` and
   `n_step_sarsa`; by `traces` (eligibility traces) also `sarsa_lambda` and `q_lambda`.
@@ -26,7 +27,7 @@ To add an agent: a class in a module of its own, written to `protocol`, and its 
 or the entry-point group `hexapods.agents` of another package. `sarsa` and `n_step_sarsa` are short
 examples of learners, `beam` of a search; `tests/agents/test_learners.py` tests all learners alike.
 A setting is an annotated keyword parameter of the constructor (`hexapods.domain.settings`); with
-`live=True` and a parameter of `tune` it may change during a training. To explain its steps a
-learner has `explain_choice` and `explain_update`, a search `futures`, which call the functions that
-it acts and learns with.
+`live=True` and a parameter of `tune` it may change during a training. A learner with an update rule
+of its own is explained by a class in `derived_explanation`, or by its own `explain_choice` and
+`explain_update`; a search by `futures`.
 """

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from hexapods.agents.explanation import Term
 from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.q_table import QTable
 from hexapods.agents.tabular import TabularLearner
@@ -31,28 +30,22 @@ class DoubleQ(TabularLearner):
 
         Which of the two tables is Q₁ is drawn by lot; ties of the maximum as well.
         """
-        chosen = int(self._rng.integers(2))
-        learning, valuing = self._halves[chosen], self._halves[1 - chosen]
-        observation, legal = transition.next_observation, transition.next_legal
-        best = self._highest(legal, learning.values_of(observation, legal))
-        (value,) = valuing.values_of(observation, [best])
-        target = self._return_m(transition.reward_m, value)
-        before, other = learning.value(state, column), valuing.value(state, column)
+        drawn, next_value = self._draw(transition)
+        learning, valuing = self._halves[drawn], self._halves[1 - drawn]
+        target = self._return_m(transition.reward_m, next_value)
+        before = learning.value(state, column)
         after = (1 - self._alpha) * before + self._alpha * target
         learning.set_value(state, column, after)
-        mean = (after + other) / 2
-        if self._explained is not None:
-            terms = (
-                Term("α", self._alpha, "learning rate"),
-                Term("Q₁", before, f"value in table {chosen + 1}, which was drawn to learn"),
-                *self._reward_terms(transition),
-                Term("Q₂′", value, "value in the other table of the best next action by the first"),
-                Term("Q₂", other, "value in the other table"),
-            )
-            rule = f"((1 − α) · Q₁ + α · ({self._return_rule('r', 'Q₂′')}) + Q₂) / 2"
-            self._explain((state, column), (rule, terms), mean)
-        self.table.set_value(state, column, mean)
+        self.table.set_value(state, column, (after + valuing.value(state, column)) / 2)
         self._learn_average(target - before)
+
+    def _draw(self, transition: Transition) -> tuple[int, float]:
+        """Draw which table is Q₁; return its index, and Q₂(s′, argmax Q₁(s′, ·))."""
+        drawn = int(self._rng.integers(2))
+        observation, legal = transition.next_observation, transition.next_legal
+        best = self._highest(legal, self._halves[drawn].values_of(observation, legal))
+        (next_value,) = self._halves[1 - drawn].values_of(observation, [best])
+        return drawn, next_value
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the values of both tables at `where`."""

@@ -1,8 +1,5 @@
 """Dyna-Q (Sutton 1990; Sutton and Barto, 2nd edition, §8.2)."""
 
-from functools import partial
-
-from hexapods.agents.explanation import Rule, Term
 from hexapods.agents.planning import PlanningLearner
 from hexapods.agents.protocol import Transition
 from hexapods.agents.tabular_model import TriedPair
@@ -37,16 +34,7 @@ class DynaQ(PlanningLearner):
         for number in self._rng.integers(len(pairs), size=self._planning_steps).tolist():
             pair = pairs[number]
             reward, best = self._imagined_reward_m(pair), self.table.best(pair.last_next)
-            target = self._return_m(reward, best)
-            explain = partial(self._explain_planned, reward, best)
-            self._move_towards(pair.state, pair.column, target, explain)
-
-    def _explain_planned(self, reward_m: float, best: float) -> Rule:
-        return self._return_rule("r̂", "Q′"), (
-            Term("r̂", reward_m, "imagined reward [m]"),
-            self._return_term(),
-            Term("Q′", best, "highest value in the state that followed last time"),
-        )
+            self._move_towards(pair.state, pair.column, self._return_m(reward, best))
 
     def _imagined_reward_m(self, pair: TriedPair) -> float:
         """Return the reward [m] of an imagined step."""

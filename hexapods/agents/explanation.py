@@ -1,8 +1,8 @@
 """Explanations of a learner's steps: why it chose an action, and how its values changed.
 
 A rule is arithmetic over named terms, such as `(1 − α) · Q + α · (r + γ · Q′)`: `evaluate` gives
-what the learner computed, to the last bit. A learner explains a step while it takes it, by the
-functions that it acts and learns with, so that its explanations cannot differ from what it does.
+what the learner computed, to the last bit. `derived_explanation` derives them for learners with a
+Q-table; other learners may explain themselves (`Explaining`).
 """
 
 import ast
@@ -147,7 +147,7 @@ class ChoiceExplanation:
 
 
 class Future(NamedTuple):
-    """Finding of a search about an action of the present state."""
+    """Simulated return of an action of the present state, as a search compared it."""
 
     action: Action
     reward_m: float
@@ -162,18 +162,18 @@ class Future(NamedTuple):
 
 @runtime_checkable
 class ExplainingSearch(Protocol):
-    """Search that tells what it found for its newest decision.
+    """Search that returns the futures which it compared for its newest decision.
 
     Its class says in `compares` what `Future.return_m` is.
     """
 
     def futures(self) -> Sequence[Future]:
-        """Return what was found about each action that was simulated."""
+        """Return the reward and the return of each action that was simulated."""
 
 
 @runtime_checkable
 class Explaining(Protocol):
-    """Learner that explains its steps. Other learners show their values only."""
+    """Learner that explains its steps itself, without a class of `derived_explanation` for it."""
 
     def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
         """Choose as `act` does, and explain the choice."""

@@ -8,7 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hexapods.agents.explanation import Belief, Term, UpdateExplanation, ValueUpdate
+from hexapods.agents.explanation import (
+    Belief,
+    ChoiceExplanation,
+    Term,
+    UpdateExplanation,
+    ValueUpdate,
+)
 from hexapods.agents.protocol import AgentState, Problem, Transition
 from hexapods.agents.tabular import Gamma, TabularAgent
 from hexapods.agents.tabular_model import TabularModel, check_problem
@@ -203,6 +209,12 @@ class ModelAgent(TabularAgent):
     def _entry_of(self, observation: Cells, action: Action) -> tuple[int, int]:
         """Return the entry of the table, and so the pair of the model, of an action in a state."""
         return self._table.entry(self._table.index(observation), self._table.column(action))
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        scores = self.values(observation)
+        action = self.act(observation, legal)
+        return ChoiceExplanation(action, "exploited", "value in the table", scores)
 
     @abstractmethod
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:

@@ -1,14 +1,10 @@
 """Tabular n-step Sarsa (Sutton and Barto, 2nd edition, §7.2)."""
 
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.explanation import Rule, Term, UpdateExplanation, ValueUpdate
 from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.q_table import check_entries
 from hexapods.agents.tabular import TabularLearner
@@ -55,45 +51,11 @@ class NStepSarsa(TabularLearner):
         if len(self._waiting) < self._return_steps:
             return
         rewards = [reward for *_, reward in self._waiting]
-        target = value = self._chosen_next(transition)
+        target = self._chosen_next(transition)
         for reward in reversed(rewards):
             target = self._return_m(reward, target)
         first_state, first_column, _ = self._waiting.pop(0)
-        explain = partial(self._explain_return, rewards, value)
-        self._move_towards(first_state, first_column, target, explain)
-
-    def _explain_return(self, rewards: Sequence[float], value: float) -> Rule:
-        """Return the n rewards and the value after them, nested as they are added up."""
-        symbols = [f"r{number}" for number in range(1, len(rewards) + 1)]
-        rule = "Q′"
-        for symbol in reversed(symbols):
-            rule = self._return_rule(symbol, rule if rule == "Q′" else f"({rule})")
-        return rule, (
-            *(
-                Term(symbol, reward, f"reward {number} of these {len(rewards)} steps [m]")
-                for number, (symbol, reward) in enumerate(zip(symbols, rewards, strict=True), 1)
-            ),
-            self._return_term(),
-            Term("Q′", value, "value of the next action, which is chosen already"),
-        )
-
-    def _explanation(
-        self, transition: Transition, updates: Sequence[ValueUpdate]
-    ) -> UpdateExplanation:
-        """Return the explanation of the change of the value n − 1 steps ago, if there is one."""
-        late = self._return_steps - 1
-        if not updates:
-            return UpdateExplanation(
-                f"No value changes yet: a step is judged when {self._return_steps} rewards are "
-                f"known, and {len(self._waiting)} of them are."
-            )
-        explained = super()._explanation(transition, updates)
-        if late == 0:
-            return explained
-        ago = "one step" if late == 1 else f"{late} steps"
-        return replace(
-            explained, summary=f"The step of {ago} ago is judged now. {explained.summary}"
-        )
+        self._move_towards(first_state, first_column, target)
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the steps that are not judged yet."""

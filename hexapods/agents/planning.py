@@ -1,14 +1,11 @@
 """Base class of learners that also learn from remembered steps (Sutton and Barto, chapter 8)."""
 
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.explanation import UpdateExplanation, ValueUpdate
-from hexapods.agents.protocol import AgentState, Problem, Transition
+from hexapods.agents.protocol import AgentState, Problem
 from hexapods.agents.tabular import TabularLearner
 from hexapods.agents.tabular_model import TabularModel, check_problem
 from hexapods.domain.settings import Setting
@@ -52,14 +49,6 @@ class PlanningLearner(TabularLearner):
         self._planning_steps = planning_steps
         self._model = TabularModel()
 
-    def _explanation(
-        self, transition: Transition, updates: Sequence[ValueUpdate]
-    ) -> UpdateExplanation:
-        """Return the explanation of the direct update, and what was planned after it."""
-        explained = super()._explanation(transition, updates)
-        planned = planning_summary(explained.others)
-        return replace(explained, summary=f"{explained.summary} {planned}")
-
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the model."""
         return super().state() | self._model.dump()
@@ -73,15 +62,3 @@ class PlanningLearner(TabularLearner):
         """Check what `load` relies on beyond the table, as in `TabularLearner`."""
         TabularLearner.check_state(state)
         TabularModel.check(state)
-
-
-def planning_summary(planned: Sequence[ValueUpdate]) -> str:
-    """Return in a sentence how many values were changed by planning."""
-    changed = {
-        (update.observation, update.action) for update in planned if update.before != update.after
-    }
-    updates, values = len(planned), len(changed)
-    return (
-        f"Then it went over {updates} remembered step{'s' * (updates != 1)}, which changed "
-        f"{values or 'no'} value{'s' * (values != 1)}."
-    )

@@ -1,17 +1,14 @@
 """Prioritized sweeping (Moore and Atkeson 1993; Sutton and Barto, 2nd edition, §8.4)."""
 
-from collections.abc import Sequence
-from functools import partial
 from heapq import heapify, heappop, heappush
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.explanation import Rule, Term, UpdateExplanation, ValueUpdate
-from hexapods.agents.planning import PlanningLearner, planning_summary
+from hexapods.agents.planning import PlanningLearner
 from hexapods.agents.protocol import AgentState, Transition
-from hexapods.agents.tabular import Alpha, summary_of
+from hexapods.agents.tabular import Alpha
 from hexapods.agents.tabular_model import TriedPair
 from hexapods.domain.settings import Setting
 from hexapods.domain.sums import ordered_sum
@@ -70,51 +67,24 @@ class PrioritizedSweeping(PlanningLearner):
     def _sweep(self, pair: TriedPair) -> None:
         """Q ← (1 − α) Q + α (r̄ + γ Σ p max Q(s′, ·)); then queue the pairs that led to its s."""
         before = self.table.best(pair.state)
-        later = self._later(pair)
-        target, explain = (
-            self._planned_target(pair, later),
-            partial(self._explain_sweep, pair, later),
-        )
-        self._move_towards(pair.state, pair.column, target, explain)
+        self._move_towards(pair.state, pair.column, self._planned_target(pair))
         if self.table.best(pair.state) != before:
             for number in self._model.leading_to(pair.state):
                 self._enqueue(number)
 
-    def _planned_target(self, pair: TriedPair, later: float) -> float:
-        return self._return_m(pair.mean_reward_m, later, pair.tries)
+    def _planned_target(self, pair: TriedPair) -> float:
+        return self._return_m(pair.mean_reward_m, self._later(pair), pair.tries)
 
     def _later(self, pair: TriedPair) -> float:
         """Return the sum of the highest values in all states that followed a pair."""
         best = self.table.best
         return ordered_sum(count * best(state) for state, count in pair.outcomes.items())
 
-    def _explain_sweep(self, pair: TriedPair, later: float) -> Rule:
-        return self._return_rule("r̄", "Σ / N"), (
-            Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
-            self._return_term(),
-            Term("Σ", later, "sum of the highest values in the states that followed"),
-            Term("N", pair.tries, "number of tries"),
-        )
-
-    def _explanation(
-        self, transition: Transition, updates: Sequence[ValueUpdate]
-    ) -> UpdateExplanation:
-        """Return the explanation of the first update of this step's value, if it was due."""
-        entry = transition.observation, transition.action
-        of_entry = [update for update in updates if (update.observation, update.action) == entry]
-        others = [update for update in updates if not of_entry or update is not of_entry[0]]
-        if of_entry:
-            summary = summary_of(of_entry[0])
-        else:
-            summary = "Its own value was not worked on: others would change more, or it hardly."
-        planned = planning_summary(updates)
-        return UpdateExplanation(f"{summary} {planned}", of_entry[0] if of_entry else None, others)
-
     def _enqueue(self, number: int) -> None:
         """Set the priority of a pair; it leaves the queue if its value would hardly change."""
         pair = self._model.pairs[number]
         value = self.table.value(pair.state, pair.column)
-        priority = abs(self._planned_target(pair, self._later(pair)) - value)
+        priority = abs(self._planned_target(pair) - value)
         if priority > self._threshold_m:
             self._priorities[number] = priority
             heappush(self._heap, (-priority, number))

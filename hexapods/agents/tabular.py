@@ -1,24 +1,13 @@
 """Base classes: agents that act greedily in a Q-table, and learners with an ε-greedy policy."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 
-from hexapods.agents.explanation import (
-    Belief,
-    ChoiceExplanation,
-    Rule,
-    Term,
-    UpdateExplanation,
-    ValueUpdate,
-    copy_of,
-    in_millimetres,
-)
 from hexapods.agents.protocol import AgentState, Problem, Transition
 from hexapods.agents.q_table import QTable, check_size
 from hexapods.agents.value_table import ValueTable
@@ -154,12 +143,6 @@ class TabularAgent(ABC):
         """Return the action with the highest value in the table."""
         return self._highest(legal, self.table.values_of(observation, legal))
 
-    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
-        """Choose as `act` does, and explain the choice."""
-        scores = self.values(observation)
-        action = self.act(observation, legal)
-        return ChoiceExplanation(action, "exploited", "value in the table", scores)
-
     def _highest(self, legal: Sequence[Action], values: Sequence[float]) -> Action:
         """Return the action with the highest of some values; ties are broken at random."""
         highest = max(values)
@@ -248,8 +231,6 @@ class TabularLearner(TabularAgent):
         self._steps_per_episode = steps_per_episode
         self._learned = 0
         self._fixed_epsilon: float | None = None
-        self._explained: list[ValueUpdate] | None = None
-        """Updates of values so far, while those of a transition are explained."""
 
     next_meaning = "value of the next state"
     """Meaning of `_next_value`, for explanations."""
@@ -265,23 +246,10 @@ class TabularLearner(TabularAgent):
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return an ε-greedy action; ties are broken at random."""
-        if self._explores(self._rng):
+        epsilon = self.epsilon
+        if epsilon > 0 and self._rng.random() < epsilon:
             return self._any(legal)
         return super().act(observation, legal)
-
-    def _explores(self, rng: np.random.Generator) -> bool:
-        """Whether the next action is a random one, by a draw."""
-        epsilon = self.epsilon
-        return epsilon > 0 and rng.random() < epsilon
-
-    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
-        """Choose as `act` does, and explain the choice."""
-        epsilon = self.epsilon
-        draw = float(copy_of(self._rng).random()) if epsilon > 0 else None
-        explores = self._explores(copy_of(self._rng))
-        greedy = super().explain_choice(observation, legal)
-        explained = replace(greedy, epsilon=epsilon, draw=draw)
-        return replace(explained, kind="explored") if explores else explained
 
     def learn(self, transition: Transition) -> None:
         """Update the table, and the visit count of the state and action."""
@@ -291,60 +259,13 @@ class TabularLearner(TabularAgent):
         table.count_visit(state, column)
         self._learned += 1
 
-    def explain_update(self, transition: Transition) -> UpdateExplanation:
-        """Learn as `learn` does, and explain how the values change."""
-        updates: list[ValueUpdate] = []
-        self._explained, average_m = updates, self._average_m
-        try:
-            self.learn(transition)
-        finally:
-            self._explained = None
-        explained = self._explanation(transition, updates)
-        if not self._is_average:
-            return explained
-        average = Belief("average reward of a step", average_m, self._average_m)
-        return replace(explained, beliefs=[*explained.beliefs, average])
-
-    def _explain_target(self, transition: Transition) -> Rule:
-        """Return what `_target` is computed from."""
-        rule, terms = self._explain_next(transition)
-        return self._return_rule("r", rule), (*self._reward_terms(transition), *terms)
-
-    def _rate_terms(self, before: float) -> Sequence[Term]:
-        return Term("Q", before, "value before"), Term("α", self._alpha, "learning rate")
-
-    def _reward_terms(self, transition: Transition) -> Sequence[Term]:
-        return Term("r", transition.reward_m, "reward of this step [m]"), self._return_term()
-
-    def _explain_next(self, transition: Transition) -> Rule:
-        """Return what `_next_value` is computed from."""
-        return "Q′", (Term("Q′", self._next_value(transition), self.next_meaning),)
-
-    def _explanation(
-        self,
-        transition: Transition,  # noqa: ARG002
-        updates: Sequence[ValueUpdate],
-    ) -> UpdateExplanation:
-        """Return the explanation of the updates by a transition, of which the first is direct."""
-        direct, *others = updates
-        return UpdateExplanation(summary_of(direct), direct, others)
-
-    def _explain(self, entry: tuple[int, int], explained: Rule, after: float) -> None:
-        """Add the update of a value, by row and column, to those explained, before it is made."""
-        assert self._explained is not None  # noqa: S101 - asked for by the caller
-        state, column = entry
-        table, (rule, terms) = self.table, explained
-        before = table.value(state, column)
-        place = table.cells_at(state), table.action_at(column)
-        self._explained.append(ValueUpdate(*place, rule, tuple(terms), before, after))
-
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Apply the update rule for a transition from row `state` by the action in `column`.
 
-        Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q′), Q′ being the value of the next state.
+        Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q′), Q′ being the value of the next state (paper,
+        Algorithm 1).
         """
-        explain = partial(self._explain_target, transition)
-        self._move_towards(state, column, self._target(transition), explain)
+        self._move_towards(state, column, self._target(transition))
 
     def _target(self, transition: Transition) -> float:
         return self._return_m(transition.reward_m, self._next_value(transition))
@@ -361,16 +282,6 @@ class TabularLearner(TabularAgent):
             return reward_m - self._average_m + later / tries
         return reward_m + self._gamma * later / tries
 
-    def _return_rule(self, reward: str, later: str) -> str:
-        """Return the formula of `_return_m`, of these symbols."""
-        return f"{reward} − R̄ + {later}" if self._is_average else f"{reward} + γ · {later}"
-
-    def _return_term(self) -> Term:
-        """Return the term of `_return_rule` that is of the learner and not of the step."""
-        if self._is_average:
-            return Term("R̄", self._average_m, "average reward of a step, as learned so far [m]")
-        return Term("γ", self._gamma, "discount")
-
     def _learn_average(self, error: float) -> None:
         """R̄ ← R̄ + η α δ, for the error δ of a value, if the objective is `average`."""
         if self._is_average:
@@ -380,17 +291,10 @@ class TabularLearner(TabularAgent):
         """Return the value of the next state, by the rule of this learner. No state is terminal."""
         raise NotImplementedError
 
-    def _move_towards(
-        self, state: int, column: int, target: float, explain: Callable[[], Rule]
-    ) -> None:
-        """Q(s, a) ← (1 − α) Q(s, a) + α target; `explain` returns what that is computed from."""
+    def _move_towards(self, state: int, column: int, target: float) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α target."""
         before = self.table.value(state, column)
-        after = (1 - self._alpha) * before + self._alpha * target
-        if self._explained is not None:
-            rule, terms = explain()
-            rule = f"(1 − α) · Q + α · ({rule})"
-            self._explain((state, column), (rule, (*self._rate_terms(before), *terms)), after)
-        self.table.set_value(state, column, after)
+        self.table.set_value(state, column, (1 - self._alpha) * before + self._alpha * target)
         self._learn_average(target - before)
 
     def _best_next(self, transition: Transition) -> float:
@@ -455,16 +359,3 @@ class TabularLearner(TabularAgent):
         (learned,) = state["learned"].tolist()
         if not isinstance(learned, int) or learned < 0:
             raise ValueError("its step count is negative or not whole")
-
-
-def summary_of(update: ValueUpdate) -> str:
-    """Return in a sentence how a value changed."""
-    change = update.after - update.before
-    if change == 0:
-        return "It got what it expected: the value stays as it was."
-    came = "more" if change > 0 else "less"
-    return (
-        f"It got {came} than it expected, counting what it expects from there on: the value "
-        f"{'rises' if change > 0 else 'falls'} from {in_millimetres(update.before)} to "
-        f"{in_millimetres(update.after)}."
-    )

@@ -63,6 +63,14 @@ class TabularModel:
         """Return the number of a pair; None if it was never tried."""
         return self._numbers.get((state, column))
 
+    def pair(self, state: int, column: int) -> TriedPair:
+        """Return a pair that was tried or imagined.
+
+        Raises:
+            KeyError: if it was neither.
+        """
+        return self.pairs[self._numbers[state, column]]
+
     def leading_to(self, state: int) -> Iterator[int]:
         """Iterate over the numbers of the pairs that a state has followed, in no fixed order."""
         return iter(self._leading_to.get(state, ()))

@@ -1,14 +1,12 @@
 """Eligibility traces, which credit a reward to earlier steps (Sutton and Barto 1998, chapter 7)."""
 
-from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
 
-from hexapods.agents.explanation import Rule, Term, UpdateExplanation, ValueUpdate
 from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.q_table import check_entries
-from hexapods.agents.tabular import Share, TabularLearner, summary_of
+from hexapods.agents.tabular import Share, TabularLearner
 from hexapods.domain.settings import Setting, declare
 
 TraceDecay = Annotated[
@@ -21,7 +19,6 @@ TraceDecay = Annotated[
         examples=(0, 0.5, 0.9),
     ),
 ]
-_ERROR = "what came, less what this step was worth before"
 _MIN_TRACE = 1e-3
 """Cut-off: eligibility traces below it are dropped."""
 
@@ -41,50 +38,23 @@ class TraceLearner(TabularLearner):
         """Eligibility traces by (row, column) of the table, the newest last."""
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Credit the error δ, what came less Q(s, a), to every step with a trace."""
-        error = self._target(transition) - self.table.value(state, column)
-        # Before any value changes, on which the target depends.
-        target = None if self._explained is None else self._explain_target(transition)
-        self._credit((state, column), error, target)
-
-    def _credit(self, newest: tuple[int, int], error: float, target: Rule | None) -> None:
         """Q ← Q + α δ e for every trace e, that of this step being 1; then e ← γ λ e.
 
-        γ is 1 where the objective is `average`.
+        δ = r + γ Q′ − Q(s, a), Q′ being the value of the next state. In e, γ is 1 where the
+        objective is `average`.
         """
-        self._traces.pop(newest, None)
-        self._traces[newest] = 1.0
+        error = self._target(transition) - self.table.value(state, column)
+        self._traces.pop((state, column), None)
+        self._traces[state, column] = 1.0
         discount = 1.0 if self._is_average else self._gamma
         decay, traces = discount * self._trace_decay, {}
-        for place, trace in self._traces.items():
-            before = self.table.value(*place)
-            after = before + self._alpha * error * trace
-            if target is not None:
-                difference: Rule = ("δ", (Term("δ", error, _ERROR),))
-                if place == newest:
-                    difference = f"({target[0]} − Q)", target[1]
-                rule, terms = difference
-                share = Term("e", trace, "trace: how much the step counts for it")
-                explained = f"Q + α · {rule} · e", (*self._rate_terms(before), *terms, share)
-                self._explain(place, explained, after)
-            self.table.set_value(*place, after)
+        for pair, trace in self._traces.items():
+            value = self.table.value(*pair)
+            self.table.set_value(*pair, value + self._alpha * error * trace)
             if trace * decay >= _MIN_TRACE:
-                traces[place] = trace * decay
+                traces[pair] = trace * decay
         self._traces = traces
         self._learn_average(error)
-
-    def _explanation(
-        self,
-        transition: Transition,  # noqa: ARG002
-        updates: Sequence[ValueUpdate],
-    ) -> UpdateExplanation:
-        """Return the explanation of the newest trace's update, and those of the other traces."""
-        *others, direct = updates
-        earlier = "the step before" if len(others) == 1 else f"{len(others)} steps before"
-        summary = summary_of(direct)
-        if others:
-            summary += f" {earlier[0].upper()}{earlier[1:]} share in it, by their traces."
-        return UpdateExplanation(summary, direct, others)
 
     def tune(self, *, trace_decay: TraceDecay | None = None, **changes: Any) -> None:
         """Change rates from the next step on, as in `TabularLearner`."""

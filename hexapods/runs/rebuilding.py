@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from hexapods.agents.explanation import ChoiceExplanation, Explaining, UpdateExplanation
+from hexapods.agents.derived_explanation import explain_choice, explain_update
+from hexapods.agents.explanation import ChoiceExplanation, UpdateExplanation
 from hexapods.agents.protocol import Agent, Transition, Tunable, Valuing
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.feet import Feet, StepLaw
@@ -193,10 +194,8 @@ class RebuiltLearner:
         chose_early = self._next_action is not None
         choice = self._choose(logged, explain=True)
         transition = self._end(logged, explain_next=True)
-        if transition is not None and isinstance(agent, Explaining):
-            update = agent.explain_update(transition)
-        elif transition is not None:
-            agent.learn(transition)
+        if transition is not None:
+            update = explain_update(agent, transition)
         self.step += 1
         return ExplainedStep(self.step, logged, visits, choice, update, chose_early)
 
@@ -231,8 +230,8 @@ class RebuiltLearner:
 
     def _decide(self, observation: Cells, explain: bool) -> tuple[Action, ChoiceExplanation | None]:
         legal = self._sensors.legal(observation)
-        if explain and isinstance(self.agent, Explaining):
-            choice = self.agent.explain_choice(observation, legal)
+        choice = explain_choice(self.agent, observation, legal) if explain else None
+        if choice is not None:
             return choice.action, choice
         return Action(*self.agent.act(observation, legal)), None
 
