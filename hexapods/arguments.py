@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any, NoReturn, TypedDict, TypeVar
 
 import numpy as np
@@ -19,19 +19,18 @@ from hexapods.domain.model_robot import ModelRobot, model_robot
 from hexapods.domain.records import check_kept
 from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
 from hexapods.domain.robot_library import RobotLibrary
+from hexapods.domain.simulator import RewardKind
 from hexapods.domain.text import MAX_NAME, visible
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
 from hexapods.imports.child import read_robot_file
 from hexapods.imports.upload import MAX_UPLOAD_BYTES
-from hexapods.runs.config import WalkingProblem
+from hexapods.runs.config import SimulatorName, WalkingProblem
 from hexapods.runs.recommendation import recommend
 
 C = TypeVar("C", bound=WalkingProblem)
 GAIT = "left-right-origin"
 """The gait where none is given: the first of the paper's."""
-WALK = tuple(field.name for field in fields(WalkingProblem))
-"""Names of the arguments that describe a walking problem."""
 GaitLike = str | Mapping[str, Any] | GaitSpec
 """A gait: its name, itself, or a mapping with `right_leg`, `left_leg`, and `symmetry`, `pairs` or
 `groups`."""
@@ -42,6 +41,36 @@ WorldLike = str | Iterable[Disturbance | Mapping[str, Any] | str] | World
 """A world: its name, disturbances (each a text, a mapping or itself), or itself."""
 
 
+class Walk(TypedDict, total=False):
+    """Keyword arguments that describe a walking problem.
+
+    Limits, and the defaults of what is left out, are those of `WalkingProblem`.
+    """
+
+    gait: GaitLike
+    """A name, such as `left-right-origin` (default), or a `Gait` or its fields."""
+    robot: RobotLike
+    """A preset's name, `stiff` (default), `compliant` or `slippery`, or a `Robot`, or what differs
+    from a preset."""
+    simulator: SimulatorName
+    """`mujoco` or `kinematic`, which is ideal: without slip."""
+    divisions: int
+    """Points along each side of the foot grid."""
+    grid_side_m: float
+    """Side of the foot grid [m]."""
+    world: WorldLike
+    """A name, such as `ice`, a list of disturbances, or a `World`; by default flat ground."""
+    tolerance: float
+    """How far the robot that the seed draws differs from its design, as a share."""
+    reward: RewardKind
+    """Displacement that a step's reward is: `forward`, along the robot's own heading, or `track`,
+    along the track."""
+
+
+WALK = tuple(Walk.__annotations__)
+"""Names of the arguments that describe a walking problem."""
+
+
 class _NotGiven:
     """Default of an argument whose value follows from others, such as from a table."""
 
@@ -50,10 +79,6 @@ class _NotGiven:
 
 
 NOT_GIVEN: Any = _NotGiven()
-
-
-class NoMore(TypedDict):
-    """Keyword arguments of a function that takes no others; it names the valid ones."""
 
 
 def given_arguments(

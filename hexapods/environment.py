@@ -9,16 +9,16 @@ imports it, and makes one. After `import hexapods.environment` its name alone is
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, SupportsInt
+from typing import TYPE_CHECKING, Any, SupportsInt, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.arguments import (
-    GAIT,
-    GaitLike,
-    RobotLike,
+    WALK,
+    Walk,
     WorldLike,
+    check_names,
     plain,
     read_disturbance,
     read_walk,
@@ -28,12 +28,12 @@ from hexapods.assembly import build_simulator, sensor_noise
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.observation import Observation, action_mask, legal_in
-from hexapods.domain.simulator import RewardKind, Simulator
+from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import Action, IntArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.exports.video import robot_camera
 from hexapods.extras import needs
-from hexapods.runs.config import RACE_STEPS, SimulatorName, TrainingConfig
+from hexapods.runs.config import RACE_STEPS, TrainingConfig
 from hexapods.runs.walker import Sensors
 
 with needs("gym", "the Gymnasium environment"):
@@ -74,37 +74,23 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
     def __init__(
         self,
         *,
-        gait: GaitLike = GAIT,
-        robot: RobotLike = "stiff",
-        simulator: SimulatorName = "mujoco",
-        divisions: int = 2,
-        grid_side_m: float = 0.04,
         observation: Observation = "measured",
-        world: WorldLike = UNDISTURBED,
         disturbances: Iterable[Disturbance | Mapping[str, Any] | str] = (),
-        tolerance: float = 0.0,
-        reward: RewardKind = "forward",
         start_noise_m: float = 0.0,
         render_mode: str | None = None,
+        **walk: Unpack[Walk],
     ) -> None:
         """Build the robot and put it at rest.
 
         Args:
-            gait: a name, or a specification of orientation and groups of legs.
-            robot: a preset's name, or overrides of one.
-            simulator: `mujoco` or `kinematic`.
-            divisions: points along a side of the foot grid.
-            grid_side_m: side length of the foot grid.
             observation: `measured`, `commanded` or `planned`, how the state is read.
-            world: as in `hexapods.train`: a name such as `ice`, a list of disturbances, or a
-                `World`. What happens at a step happens at that step of each episode.
             disturbances: what is added to the world, such as `["limp:legs=1,4:at=10"]`.
-            tolerance: how far the robot that the seed draws differs from its design, as a share.
-            reward: displacement that a step's reward is: `forward`, along the robot's own heading,
-                or `track`, along the track.
             start_noise_m: each group's feet start up to so far from home, sideways and forward,
                 every offset with the same probability; at most half of `grid_side_m` [m].
             render_mode: `rgb_array`, or None for no pictures.
+            walk: `gait`, `robot`, `simulator`, `divisions`, `grid_side_m`, `world`, `tolerance` and
+                `reward`, as in `hexapods.train`. What happens in the world at a step happens at
+                that step of each episode.
 
         Raises:
             InvalidInput: if a value is invalid; the message names the valid ones.
@@ -112,17 +98,12 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         modes = type(self).metadata["render_modes"]
         if render_mode is not None and render_mode not in modes:
             raise UnknownName("render mode", render_mode, modes)
-        settings = {
-            "gait": gait,
-            "robot": robot,
-            "simulator": simulator,
-            "divisions": divisions,
-            "grid_side_m": grid_side_m,
-            "world": _world_with(world, disturbances),
-            "tolerance": tolerance,
-            "reward": reward,
-        }
-        self._config = TrainingConfig(**read_walk(plain(settings)), observation=observation)
+        valid = ("observation", "disturbances", "start_noise_m", "render_mode", *WALK)
+        check_names("the environment", walk, valid)
+        world = _world_with(walk.get("world", UNDISTURBED), disturbances)
+        self._config = TrainingConfig(
+            **read_walk(plain({**walk, "world": world})), observation=observation
+        )
         self._start_noise_m = _checked_noise_m(start_noise_m, self._config.grid_side_m)
         self.render_mode = render_mode
         self.metadata = type(self).metadata | {"render_fps": 1 / self._config.robot.step_s}

@@ -19,16 +19,11 @@ import numpy as np
 
 from hexapods.agents.registry import AgentClass, needs_practice
 from hexapods.arguments import (
-    NOT_GIVEN,
     WALK,
-    GaitLike,
-    NoMore,
-    RobotLike,
-    WorldLike,
+    Walk,
     check_callable,
     check_names,
     check_savable,
-    given_arguments,
     plain,
     read_walk,
 )
@@ -37,7 +32,6 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import declared_fields
-from hexapods.domain.simulator import RewardKind
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.policies import Policy, PolicyAgent
@@ -45,7 +39,7 @@ from hexapods.race_tables import Standing, lane_table, step_table
 from hexapods.result_table import ResultTable
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.clocks import Clock, check_clock
-from hexapods.runs.config import RACE_STEPS, SimulatorName, agent_settings, problem_of
+from hexapods.runs.config import RACE_STEPS, agent_settings, problem_of
 from hexapods.runs.lane import LaneConfig, PlanningModel, lane_config, observation_of
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.race_file import race_arrays, race_recording
@@ -273,15 +267,7 @@ def race(
     steps: int = RACE_STEPS,
     seed: int = 0,
     on_step: Callable[[], object] | None = None,
-    gait: GaitLike = NOT_GIVEN,
-    robot: RobotLike = NOT_GIVEN,
-    simulator: SimulatorName = NOT_GIVEN,
-    divisions: int = NOT_GIVEN,
-    grid_side_m: float = NOT_GIVEN,
-    world: WorldLike = NOT_GIVEN,
-    tolerance: float = NOT_GIVEN,
-    reward: RewardKind = NOT_GIVEN,
-    **unknown: Unpack[NoMore],
+    **walk: Unpack[Walk],
 ) -> Race:
     """Race one to six agents (paper §5), and record every step.
 
@@ -290,23 +276,15 @@ def race(
         steps: number of steps of each lane.
         seed: seed of all random generators.
         on_step: called after each step of a lane.
-        gait: as in `train`, and so are all below; what is not given is that of the
-            first training in the race, or the default.
-        robot: geometry and actuators.
-        simulator: `mujoco` or `kinematic`.
-        divisions: points along each side of the foot grid.
-        grid_side_m: side of the foot grid [m].
-        world: what happens to the robot and the ground; never that of a training.
-        tolerance: how far the robot that the seed draws differs from its design, as a share;
-            never that of a training.
-        reward: displacement that a step's reward is, `forward` or `track`.
+        walk: `gait`, `robot`, `simulator`, `divisions`, `grid_side_m`, `world`, `tolerance` and
+            `reward`, as in `train`. What is left out is that of the first training in the race, or
+            the default; world and tolerance are never those of a training.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if a training is of another walking problem.
         IllegalAction: if a policy returns no legal action; what it raises itself is raised.
     """
-    walk = given_arguments(locals(), WALK, "unknown")
     check_names("a race", walk, ("steps", "seed", *WALK))
     check_callable("on_step", on_step)
     if isinstance(lanes, str | Lane | Training | Policy) or not isinstance(lanes, Iterable):

@@ -135,6 +135,7 @@ def test_an_illegal_action_is_a_no_op_with_zero_reward_that_counts_as_a_step() -
         ({"reward": "sideways"}, "reward must be forward, or track"),
         ({"tolerance": 0.9}, "tolerance must be a number"),
         ({"start_noise_m": 0.03}, r"start_noise_m must be a number from 0 to 0\.02"),
+        ({"simulater": "mujoco"}, "argument of the environment .*; did you mean simulator?"),
     ],
 )
 def test_an_invalid_setting_names_the_valid_values(settings: dict[str, Any], message: str) -> None:

@@ -8,16 +8,18 @@ import sys
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import pytest
 
 import hexapods as hx
 from hexapods.agents.registry import BUILT_IN
+from hexapods.arguments import WALK, Walk
 from hexapods.domain.disturbances import KINDS
+from hexapods.environment import WalkEnv
 from hexapods.experiments.config import ExperimentConfig
-from hexapods.runs.config import TrainingConfig
+from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 
@@ -127,13 +129,25 @@ def test_help_describes_the_public_names_and_nothing_else() -> None:
 def test_signatures_have_all_fields_of_the_configs(
     function: Callable[..., object], config: Any, without: set[str]
 ) -> None:
-    signature = inspect.signature(function)
-    named = {name for name, one in signature.parameters.items() if one.kind is one.KEYWORD_ONLY}
-    own = {
+    parameters = inspect.signature(function).parameters.values()
+    named = {parameter.name for parameter in parameters if parameter.kind is parameter.KEYWORD_ONLY}
+    if any(parameter.annotation == Unpack[Walk] for parameter in parameters):
+        named |= set(WALK)
+    no_fields = {
         *("table", "changes", "checkpoint", "on_record", "record", "on_step"),
         *("folder", "workers", "on_trial"),
     }
-    assert named - own == {field.name for field in fields(config)} - without
+    assert named - no_fields == {field.name for field in fields(config)} - without
+
+
+def test_the_keywords_of_a_walking_problem_are_its_fields() -> None:
+    assert [field.name for field in fields(WalkingProblem)] == list(WALK)
+
+
+@pytest.mark.parametrize("function", [hx.train, hx.race, WalkEnv.__init__])
+def test_help_names_the_keywords_of_a_walking_problem(function: Callable[..., object]) -> None:
+    text = inspect.getdoc(function) or ""
+    assert [name for name in WALK if name not in text] == []
 
 
 def test_type_checkers_know_the_arguments() -> None:
@@ -144,6 +158,9 @@ def test_type_checkers_know_the_arguments() -> None:
         lambda: hx.race(["greedy"], alhpa=0.1),  # type: ignore[call-arg]
         lambda: hx.experiment("sweep", seeds=[3]),  # type: ignore[arg-type]
         lambda: hx.iter_train(world=3, alpha=0.1),  # type: ignore[arg-type]
+        lambda: hx.race(["greedy"], divisions="2"),  # type: ignore[arg-type]
+        lambda: WalkEnv(gait=3),  # type: ignore[arg-type]
+        lambda: WalkEnv(griat="left-right-origin"),  # type: ignore[call-arg]
     ):
         with pytest.raises(hx.InvalidInput):
             call()

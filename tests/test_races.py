@@ -71,6 +71,7 @@ def test_a_race_in_which_all_fail_has_no_ranking() -> None:
         (None, {}, r"lanes is a list, .*, not None"),
         (["greedy"], {"alpha": 0.1}, "unknown argument of a race 'alpha'; choose one of: steps"),
         (["q-learning"], {}, "give the lane its training, or keep_learning=True"),
+        (["greedy"], {"devisions": 3}, r"'devisions'; choose .*; did you mean divisions\?$"),
         ([], {}, "1 to 6 lanes"),
         (["greedy"], {"on_step": 3}, "on_step is a function that is called, not 3"),
         (["greedy"], {"gait": "moonwalk"}, "unknown gait 'moonwalk'"),

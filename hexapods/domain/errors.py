@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from difflib import get_close_matches
 from typing import Any
 
 
@@ -46,10 +47,17 @@ def about(field: str) -> Iterator[None]:
 
 
 class UnknownName(InvalidInput):
-    """A name that is not registered: of a gait, an agent, a robot, a field and so on."""
+    """A name that is not registered: of a gait, an agent, a robot, a field and so on.
+
+    The message lists the valid names, and suggests the one that is spelled most like it.
+    """
 
     def __init__(self, kind: str, name: object, valid: Iterable[str]) -> None:
-        super().__init__(f"unknown {kind} {name!r}; choose one of: {', '.join(valid)}")
+        names = list(valid)
+        suggestion = "".join(
+            f"; did you mean {similar}?" for similar in get_close_matches(str(name), names, n=1)
+        )
+        super().__init__(f"unknown {kind} {name!r}; choose one of: {', '.join(names)}{suggestion}")
 
 
 class ImpossibleLegs(InvalidInput):
