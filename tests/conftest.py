@@ -88,10 +88,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     tiers.select(config, items)
     files = list(dict.fromkeys(item.path for item in items))
     promises = [file for file in files if "promises" in file.parts]
-    others = [file for file in files if "promises" not in file.parts]
+    other_files = [file for file in files if "promises" not in file.parts]
     turns = {
         file: number / len(group)
-        for group in (promises, others)
+        for group in (promises, other_files)
         for number, file in enumerate(group)
     }
 

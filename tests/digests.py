@@ -95,8 +95,8 @@ def _walk(robot: Robot) -> tuple[Any, ...]:
     """Take three greedy steps in MuJoCo, and say what is known beforehand."""
     gait = "one-by-one"
     raced = hx.race(["greedy"], robot=robot, gait=gait, steps=3)
-    known = preview(WalkingProblem(robot=robot, gait=gait))
-    return _motions(raced.recording[0]), known.law_m, known.mass_kg, known.margin_m
+    previewed = preview(WalkingProblem(robot=robot, gait=gait))
+    return _motions(raced.recording[0]), previewed.law_m, previewed.mass_kg, previewed.margin_m
 
 
 def _walk_of_model() -> tuple[Any, ...]:
@@ -110,8 +110,8 @@ def _motions(lane: Any) -> list[Any]:
 
 def _digest(value: Any) -> str:
     digest = hashlib.sha256()
-    for part in _parts(value):
-        digest.update(part)
+    for chunk in _parts(value):
+        digest.update(chunk)
     return digest.hexdigest()[:12]
 
 
@@ -125,8 +125,8 @@ def _parts(value: Any) -> Iterator[bytes]:
             yield key.encode()
             yield from _parts(value[key])
     elif isinstance(value, list | tuple):
-        for part in value:
-            yield from _parts(part)
+        for member in value:
+            yield from _parts(member)
     elif is_dataclass(value) and not isinstance(value, type):
         yield from _parts(astuple(value))
     else:

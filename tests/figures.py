@@ -100,20 +100,22 @@ def kinematic_rows(seed: int) -> dict[str, float]:
         },
         **{f"commanded {steps}": _kinematic(seed, steps, "commanded") for steps in COMMANDED_STEPS},
     }
-    found = {row: practise(config) for row, config in practices.items() if seed < seeds_of(row)}
+    distances_m = {
+        row: practise(config) for row, config in practices.items() if seed < seeds_of(row)
+    }
     if seed < seeds_of("blocks"):
-        found |= _blocks(seed)
-    return {name: metres / H_M for name, metres in found.items()}
+        distances_m |= _blocks(seed)
+    return {name: metres / H_M for name, metres in distances_m.items()}
 
 
 def _blocks(seed: int) -> dict[str, float]:
     """As the paper's Figure 4: learn 250 steps, save, load, learn 250 more."""
-    config, found = _kinematic(seed, 250, "commanded"), {}
+    config, distances_m = _kinematic(seed, 250, "commanded"), {}
     table: Checkpoint | None = None
     for steps in BLOCK_STEPS:
         learner = build_learner(config, table)
         for _ in train(learner, config):
             pass
-        found[f"block {steps}"] = evaluate(learner, config, 0.0).distance_m
+        distances_m[f"block {steps}"] = evaluate(learner, config, 0.0).distance_m
         table = from_bytes(to_bytes(snapshot(learner, config)), "block.npz")
-    return found
+    return distances_m

@@ -113,10 +113,10 @@ def _as_root() -> list[str] | None:
 
 
 def _playwrights_own() -> str | None:
-    asked = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", _ASK_PLAYWRIGHT], capture_output=True, text=True, check=False
     )
-    return asked.stdout.strip() or None
+    return completed.stdout.strip() or None
 
 
 def _starts(browser: str) -> bool:

@@ -27,10 +27,10 @@ _UNTURNED = (1.0, 0.0, 0.0, 0.0)
 _OTHER_NAMES = {"coxa": "hip", "femur": "thigh", "tibia": "knee"}
 
 
-def model_of(made: Robot) -> RobotModel:
+def model_of(robot: Robot) -> RobotModel:
     """Return a built-in robot as if it had been read from a file; its joints have other names."""
-    compiled, legs = compile_model(made), legs_of(made)
-    home = home_angles_rad(made)
+    compiled, legs = compile_model(robot), legs_of(robot)
+    home = home_angles_rad(robot)
     links, feet = list[ModelLink](), list[ModelFoot]()
     for body in range(1, compiled.nbody):
         name = compiled.body(body).name
@@ -39,18 +39,18 @@ def model_of(made: Robot) -> RobotModel:
         if compiled.body_jntnum[body] and leg:
             number = int(compiled.body_jntadr[body])
             index = number - 1
-            own, servo = legs.joints[index], made.servo_of(leg, legs.joints[index].name)
+            joint_of_robot, servo = legs.joints[index], robot.servo_of(leg, legs.joints[index].name)
             joint = ModelJoint(
-                name=_OTHER_NAMES[own.name],
+                name=_OTHER_NAMES[joint_of_robot.name],
                 axis=_floats(compiled.jnt_axis[number]),
                 anchor_m=_floats(compiled.jnt_pos[number]),
-                limits_rad=own.limits_rad,
+                limits_rad=joint_of_robot.limits_rad,
                 home_rad=float(home[index]),
                 servo_kp=servo.kp,
                 servo_kv=servo.kv,
                 servo_torque_nm=servo.torque_nm,
-                armature=made.joint_armature,
-                damping=made.joint_damping,
+                armature=robot.joint_armature,
+                damping=robot.joint_damping,
             )
         geoms = [
             geom
@@ -72,7 +72,7 @@ def model_of(made: Robot) -> RobotModel:
             )
         )
         if name.endswith("_foot"):
-            feet.append(ModelFoot(len(links) - 1, (0.0, 0.0, 0.0), made.foot_radius_m))
+            feet.append(ModelFoot(len(links) - 1, (0.0, 0.0, 0.0), robot.foot_radius_m))
     return RobotModel(tuple(links), tuple(feet))
 
 
@@ -158,8 +158,8 @@ def model_of_legs(
                 hinge.name, hinge.axis, (0.0, 0.0, 0.0), (-2.5, 2.5), 0.0,
                 20 * torque_nm, 0.5 * torque_nm, torque_nm, 0.001 * torque_nm, 0.02 * torque_nm,
             )  # fmt: skip
-            middle = _floats(part / 2 for part in hinge.link_m)
-            half = [max(abs(part) / 2, radius) for part in hinge.link_m]
+            middle = _floats(coordinate / 2 for coordinate in hinge.link_m)
+            half = [max(abs(coordinate) / 2, radius) for coordinate in hinge.link_m]
             links.append(
                 ModelLink(
                     f"leg {number} {hinge.name}",
@@ -188,12 +188,12 @@ def _inertia_of_box(
 
 def _capsule(along_m: Sequence[float], radius_m: float) -> ModelGeom:
     length = math.hypot(*along_m)
-    x, y, z = (part / length for part in along_m)
+    x, y, z = (coordinate / length for coordinate in along_m)
     turned = np.array([1 + z, -y, x, 0.0]) if z > -1 + 1e-9 else np.array([0.0, 1.0, 0.0, 0.0])
     return ModelGeom(
         "capsule",
         (radius_m, length / 2, 0.0),
-        _floats(part / 2 for part in along_m),
+        _floats(coordinate / 2 for coordinate in along_m),
         _floats(turned / np.linalg.norm(turned)),
     )
 
@@ -320,6 +320,6 @@ def with_meshes(model: RobotModel) -> RobotModel:
     return replace(model, links=tuple(links))
 
 
-def gait_of(made: Robot) -> str:
+def gait_of(robot: Robot) -> str:
     """Return a gait of two groups for a robot with four or six legs."""
-    return {4: "trot", 6: "tripod"}[len(made.legs)]
+    return {4: "trot", 6: "tripod"}[len(robot.legs)]

@@ -26,14 +26,18 @@ class NotInstalled(Exception):
 
 def main() -> int:
     """Compare; return 0 if all that can be compared is the same, else 1."""
-    here = sys.version_info[:2]
+    own_version = sys.version_info[:2]
     pythons = {version_of(python)[:2]: python for python in find_pythons()}
-    others = {version: python for version, python in pythons.items() if version != here}
-    if not others:
-        print(f"Python {_name(here)} alone is here: its results were compared with no other's")
+    other_pythons = {
+        version: python for version, python in pythons.items() if version != own_version
+    }
+    if not other_pythons:
+        print(
+            f"Python {_name(own_version)} alone is here: its results were compared with no other's"
+        )
         return 0
     is_same = True
-    for version, python in others.items():
+    for version, python in other_pythons.items():
         try:
             environment = environment_of(version, python)
         except NotInstalled as error:

@@ -93,8 +93,8 @@ class PostgresServer:
 
     def dump(self, url: str) -> str:
         """A database as SQL, without what is said to `psql` or to a session."""
-        asked = [str(self._programs / "pg_dump"), "--inserts", "--no-owner", "--dbname", url]
-        said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+        command = [str(self._programs / "pg_dump"), "--inserts", "--no-owner", "--dbname", url]
+        said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
         left_out = ("--", "\\", "SET ", "SELECT ")
         lines = [line for line in said.splitlines() if line and not line.startswith(left_out)]
         return "\n".join([*lines, ""])
@@ -107,8 +107,8 @@ class PostgresServer:
 @contextmanager
 def postgres_server() -> Iterator[PostgresServer]:
     """Start a server, and end it with the context. Raises what it says if it cannot start."""
-    with tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True) as made:
-        folder = Path(made)
+    with tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True) as path:
+        folder = Path(path)
         nobody = _unprivileged(folder)
         programs = _programs(folder, nobody)
         data = folder / "data"
@@ -116,13 +116,13 @@ def postgres_server() -> Iterator[PostgresServer]:
         initdb = [str(programs / "initdb"), "-D", str(data), "-U", _USER, *options]
         made_it = subprocess.run(initdb, capture_output=True, text=True, check=False, **nobody)
         assert made_it.returncode == 0, f"initdb failed: {made_it.stdout}{made_it.stderr}"
-        found = PostgresServer(folder, programs, nobody)
+        server = PostgresServer(folder, programs, nobody)
         try:
-            found.start()
-            yield found
+            server.start()
+            yield server
         finally:
             # At once: nothing in it is needed any more.
-            found.stop(signal.SIGQUIT)
+            server.stop(signal.SIGQUIT)
 
 
 def _unprivileged(folder: Path) -> dict[str, Any]:
@@ -144,9 +144,9 @@ def _programs(folder: Path, nobody: dict[str, Any]) -> Path:
     newest = max((site / _PACKAGE).glob("pginstall*/bin"))
     if _starts(newest, nobody):
         return newest
-    for part in (newest.parent.relative_to(site), Path(f"{_PACKAGE}.libs")):
-        if (site / part).exists():
-            shutil.copytree(site / part, folder / part)
+    for folder_of_package in (newest.parent.relative_to(site), Path(f"{_PACKAGE}.libs")):
+        if (site / folder_of_package).exists():
+            shutil.copytree(site / folder_of_package, folder / folder_of_package)
     copied = folder / newest.relative_to(site)
     assert _starts(copied, nobody), f"the PostgreSQL of {_PACKAGE} does not start on this machine"
     return copied
@@ -154,8 +154,8 @@ def _programs(folder: Path, nobody: dict[str, Any]) -> Path:
 
 def _starts(programs: Path, nobody: dict[str, Any]) -> bool:
     try:
-        asked = [str(programs / "postgres"), "--version"]
-        return subprocess.run(asked, capture_output=True, check=False, **nobody).returncode == 0
+        command = [str(programs / "postgres"), "--version"]
+        return subprocess.run(command, capture_output=True, check=False, **nobody).returncode == 0
     except OSError:
         return False
 

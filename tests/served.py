@@ -23,8 +23,10 @@ Events = Iterator[tuple[str, Any, str]]
 
 def environ(**variables: str) -> dict[str, str]:
     """Of a server: its jobs have the priority of the tests, or a busy machine starves them."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("HEXAPODS_")}
-    return {**kept, "HEXAPODS_JOB_NICENESS": "0", **variables}
+    inherited = {
+        name: value for name, value in os.environ.items() if not name.startswith("HEXAPODS_")
+    }
+    return {**inherited, "HEXAPODS_JOB_NICENESS": "0", **variables}
 
 
 class NotStartedError(Exception):
@@ -112,7 +114,7 @@ class Served:
     def jobs(self) -> list[psutil.Process]:
         """The processes of its jobs."""
         family = psutil.Process(self.process.pid).children(recursive=True)
-        return [one for one in family if is_job(one)]
+        return [process for process in family if is_job(process)]
 
     def events(self, query: str = "", last: str | None = None) -> Events:
         headers = {} if last is None else {"Last-Event-ID": last}
@@ -158,5 +160,5 @@ def serving_from(data: Path) -> Iterator[Callable[..., Served]]:
     try:
         yield make
     finally:
-        for one in served:
-            one.end(signal.SIGKILL)
+        for server in served:
+            server.end(signal.SIGKILL)

@@ -47,14 +47,16 @@ def table() -> Checkpoint:
 
 
 def test_simulator_is_that_of_the_config() -> None:
-    made = robot({"n_legs": 8})
-    walk = WalkingProblem(gait="front-back-vertical", robot=made, divisions=3, grid_side_m=0.03)
+    eight_legs = robot({"n_legs": 8})
+    walk = WalkingProblem(
+        gait="front-back-vertical", robot=eight_legs, divisions=3, grid_side_m=0.03
+    )
     physics, law = build_simulator(walk), build_simulator(replace(walk, simulator="kinematic"))
 
     assert isinstance(physics, MujocoSimulator)
     assert isinstance(law, KinematicSimulator)
     for simulator in (physics, law):
-        assert simulator.robot is made
+        assert simulator.robot is eight_legs
         assert len(simulator.grid) == 9
         assert simulator.grid.side_m == 0.03
         assert simulator.gait.groups == ((1, 3), (8, 4), (7, 5), (2, 6))

@@ -56,10 +56,10 @@ def test_with_a_file_it_goes_on_where_it_ended(tmp_path: Path) -> None:
         **{**SMALL, "seeds": 4},
     )
     assert seen == [6, 7, 8], "six of the eight runs were there"
-    kept, grown = (
+    first_distances, more_distances = (
         scored.content["tasks"][0]["budgets"][0]["distances_m"] for scored in (first, more)
     )
-    assert grown[:3] == kept
+    assert more_distances[:3] == first_distances
 
 
 def test_a_run_that_fails_is_named_and_counts_as_0() -> None:
@@ -72,7 +72,7 @@ def test_a_run_that_fails_is_named_and_counts_as_0() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "reason"),
+    ("arguments", "reason"),
     [
         ({"agent": 3}, "by its name or its class, not as 3"),
         ({"agent": "nobody"}, "unknown agent 'nobody'"),
@@ -90,6 +90,6 @@ def test_a_run_that_fails_is_named_and_counts_as_0() -> None:
         ({"agent": "q-learning", "workers": 0}, "workers must be from 1"),
     ],
 )
-def test_bad_input_is_refused(given: dict[str, Any], reason: str) -> None:
+def test_bad_input_is_refused(arguments: dict[str, Any], reason: str) -> None:
     with pytest.raises(hx.InvalidInput, match=reason):
-        hx.benchmark(**given)
+        hx.benchmark(**arguments)

@@ -13,8 +13,8 @@ def test_the_least_recently_used_values_are_dropped() -> None:
     cache.put(("a", 3), b"xyz")
     cache.put(("a", 4), b"abc")
 
-    kept = [cache.get(("a", number)) for number in (1, 2, 3, 4)]
-    assert kept == [b"abc", None, b"xyz", b"abc"]
+    values = [cache.get(("a", number)) for number in (1, 2, 3, 4)]
+    assert values == [b"abc", None, b"xyz", b"abc"]
 
 
 def test_the_newest_value_is_kept_whatever_its_size() -> None:

@@ -45,15 +45,15 @@ def run(folder: Path, name: str, tests: str) -> tuple[str, str]:
 def test_it_is_what_pytest_says_and_sums_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    others, said = run(tmp_path, "others", OTHERS)
+    failing, said = run(tmp_path, "others", OTHERS)
     passing, _ = run(tmp_path, "passing", PASSES)
 
-    outcomes, _ = read(Path(others))
+    outcomes, _ = read(Path(failing))
     assert closing_line(outcomes, 0).split(" in ")[0].strip("= ") == said.split(" in ")[0].strip(
         "= "
     )
     assert main([passing]) == 0
-    assert main([passing, others]) == 1
+    assert main([passing, failing]) == 1
     last = capsys.readouterr().out.splitlines()[-1]
     assert "= 1 failed, 4 passed, 1 skipped, 1 error in " in last
 

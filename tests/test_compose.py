@@ -18,16 +18,16 @@ _PASSWORD = f"{PREFIX}DATABASE_PASSWORD"
 
 @pytest.fixture(scope="module")
 def services() -> dict[str, Any]:
-    found: dict[str, Any] = import_module("yaml").safe_load(FILE.read_text("utf-8"))["services"]
-    return found
+    loaded: dict[str, Any] = import_module("yaml").safe_load(FILE.read_text("utf-8"))["services"]
+    return loaded
 
 
 def filled_in(template: str, environment: dict[str, str]) -> str:
     """As Compose does it, innermost first: `:-` is for what is empty, `:+` for what is not."""
     innermost = re.compile(r"\$\{(\w+)(?:(:-|:\+|:\?)([^${}]*))?\}")
 
-    def fill(found: re.Match[str]) -> str:
-        value, how, other = environment.get(found[1], ""), found[2], found[3]
+    def fill(match: re.Match[str]) -> str:
+        value, how, other = environment.get(match[1], ""), match[2], match[3]
         if how == ":+":
             return other if value else ""
         return value or (other if how == ":-" else "")

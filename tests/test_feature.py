@@ -97,7 +97,9 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], 
         (about / "METADATA").write_text("Metadata-Version: 2.1\nName: other_features\nVersion: 1\n")
         lines = [line for line in source.splitlines() if line.startswith("class ")]
         classes = [line.split()[1].partition("(")[0].rstrip(":") for line in lines]
-        points = "".join(f"{one.lower()} = other_features:{one}\n" for one in classes)
+        points = "".join(
+            f"{class_name.lower()} = other_features:{class_name}\n" for class_name in classes
+        )
         (about / "entry_points.txt").write_text(f"[hexapods.features]\n{points}")
         monkeypatch.syspath_prepend(tmp_path)
         monkeypatch.delitem(sys.modules, "other_features", raising=False)

@@ -45,10 +45,10 @@ MODELS = {
 
 
 def raced(model: RobotModel, *agents: str, steps: int = STEPS) -> hx.Race:
-    made = model_robot(model, "own")
-    gait = gait_of(made)
-    side_m = usual_grid_side_m(made, gait)
-    return hx.race(list(agents), gait=gait, robot=made, steps=steps, grid_side_m=side_m)
+    robot = model_robot(model, "own")
+    gait = gait_of(robot)
+    side_m = usual_grid_side_m(robot, gait)
+    return hx.race(list(agents), gait=gait, robot=robot, steps=steps, grid_side_m=side_m)
 
 
 @pytest.mark.test
@@ -57,8 +57,8 @@ def test_they_are_recorded_analysed_drawn_and_exported(name: str) -> None:
     model, joints = MODELS[name]
     race = raced(model, "greedy")
     config, (lane,) = race.config, race.recording
-    made = config.robot
-    legs, motion = legs_of(made), lane.steps[STEPS - 1].motion
+    robot = config.robot
+    legs, motion = legs_of(robot), lane.steps[STEPS - 1].motion
     labels = [joint.label for joint in legs.joints]
 
     assert lane.rest_qpos.shape == (legs.pose_size,) == (7 + joints,)
@@ -80,12 +80,12 @@ def test_they_are_recorded_analysed_drawn_and_exported(name: str) -> None:
     angles = np.array([float(row[f"{label}_rad"]) for label in labels])
     assert np.array_equal(angles.astype(np.float32), lane.rest_qpos[7:])
     foot_m = float(row[f"leg{len(legs)}_foot_z_m"])
-    assert foot_m == pytest.approx(made.foot_radius_m, abs=0.006)
+    assert foot_m == pytest.approx(robot.foot_radius_m, abs=0.006)
 
     log = b"".join(mcap_log(RecordedWalks.of_race(config, [lane]), "free"))
     reader = make_reader(io.BytesIO(log), decoder_factories=[DecoderFactory()])
     *_, (_, _, _, last) = reader.iter_decoded_messages(["/lane0/joint_states"])
-    assert [one.name for one in last.joints] == labels
+    assert [joint.name for joint in last.joints] == labels
 
     servos = (Servo(label, 0, number, 1500, 100) for number, label in enumerate(labels))
     walk = servo_walk(RecordedWalks.of_race(config, [lane]), ServoMap("own", tuple(servos)))
@@ -94,8 +94,8 @@ def test_they_are_recorded_analysed_drawn_and_exported(name: str) -> None:
 
 
 def test_a_mesh_stands_for_its_link_and_the_torso_has_the_agents_colour() -> None:
-    made = model_robot(with_meshes(quadruped_model()), "own")
-    mesh = RobotMesh(made)
+    robot = model_robot(with_meshes(quadruped_model()), "own")
+    mesh = RobotMesh(robot)
     names = [mesh.part_name(number) for number in range(len(mesh.parts))]
 
     torso = mesh.parts[0]
@@ -108,13 +108,13 @@ def test_a_mesh_stands_for_its_link_and_the_torso_has_the_agents_colour() -> Non
     wedges = [part for part in mesh.parts if len(part.shape.faces) == 4 and not part.painted]
     assert [len(part.links) for part in wedges] == [4], "equal meshes are instances of one"
     assert not any(part.painted for part in mesh.parts[1:-1])
-    assert antenna_m(made) == pytest.approx(0.15)
+    assert antenna_m(robot) == pytest.approx(0.15)
     assert mesh.parts[-1].shape.vertices[:, 2].max() > 0.15
 
 
 def test_links_of_a_lost_leg_are_not_drawn_and_a_stuck_one_is_red() -> None:
-    made = model_robot(quadruped_model(), "own")
-    mesh = RobotMesh(made)
+    robot = model_robot(quadruped_model(), "own")
+    mesh = RobotMesh(robot)
     world = World((Lost(legs=(2,)), Stuck(leg=3, joint="knee", angle_rad=0.1)))
     colors = {
         int(link): color
@@ -136,10 +136,10 @@ def test_learners_and_searches_race_with_it_and_tell_why() -> None:
 
 @pytest.mark.test
 def test_q_learning_practises_with_it() -> None:
-    made = model_robot(quadruped_model(), "own")
-    side_m = usual_grid_side_m(made, "trot")
+    robot = model_robot(quadruped_model(), "own")
+    side_m = usual_grid_side_m(robot, "trot")
     config = training_config(
-        gait="trot", robot=made, steps=60, seed=1, grid_side_m=side_m, evaluate_every=20
+        gait="trot", robot=robot, steps=60, seed=1, grid_side_m=side_m, evaluate_every=20
     )
     learner = build_learner(config)
     records = list(train(learner, config))

@@ -53,13 +53,13 @@ class WithTarsi(Robot):
 
 
 class _LegsWithTarsi(Legs):
-    def __init__(self, made: WithTarsi) -> None:
+    def __init__(self, robot: WithTarsi) -> None:
         self._three = legs_of(Robot())
         joints: list[Joint] = []
-        for leg in range(1, len(made.legs) + 1):
+        for leg in range(1, len(robot.legs) + 1):
             joints += self._three.of_leg(leg)
             joints += [Joint(leg, "tarsus", (-1.0, 1.0))] if leg > 1 else []
-        tarsi_kg = [0.0, *[TARSUS_KG] * (len(made.legs) - 1)]
+        tarsi_kg = [0.0, *[TARSUS_KG] * (len(robot.legs) - 1)]
         super().__init__(joints, np.add(self._three.masses_kg, tarsi_kg).tolist())
         self.others = [n for n, joint in enumerate(joints) if joint.name != "tarsus"]
 
@@ -94,20 +94,20 @@ class _KinematicsWithTarsi(FootKinematics):
 
 
 @legs_of.register
-def _(made: WithTarsi) -> Legs:
-    return _LegsWithTarsi(made)
+def _(robot: WithTarsi) -> Legs:
+    return _LegsWithTarsi(robot)
 
 
 @robot_spec.register
-def _(made: WithTarsi) -> mujoco.MjSpec:
-    masses_kg = made.coxa_kg, made.femur_kg, made.tibia_kg, TARSUS_KG
-    legs = legs_of(made)
+def _(robot: WithTarsi) -> mujoco.MjSpec:
+    masses_kg = robot.coxa_kg, robot.femur_kg, robot.tibia_kg, TARSUS_KG
+    legs = legs_of(robot)
     bodies = []
-    for leg, mount in enumerate(made.legs, start=1):
+    for leg, mount in enumerate(robot.legs, start=1):
         reach, nested = mount.radius_m, f'<frame euler="0 0 {np.deg2rad(mount.azimuth_deg)}">'
         joints = legs.of_leg(leg)
-        ends_m = [made.tibia_m - TARSUS_M, TARSUS_M] if len(joints) == 4 else [made.tibia_m]
-        lengths_m = made.coxa_m, made.femur_m, *ends_m
+        ends_m = [robot.tibia_m - TARSUS_M, TARSUS_M] if len(joints) == 4 else [robot.tibia_m]
+        lengths_m = robot.coxa_m, robot.femur_m, *ends_m
         for joint, length, kg in zip(joints, lengths_m, masses_kg, strict=False):
             name, axis = joint.label, "0 0 1" if joint.name == "coxa" else "0 -1 0"
             low, high = joint.limits_rad
@@ -117,25 +117,25 @@ def _(made: WithTarsi) -> mujoco.MjSpec:
                     mass="{kg}"/>"""
             reach = length
         bodies.append(f"""{nested}<body name="leg{leg}_foot" pos="{reach} 0 0">
-            <geom name="leg{leg}_foot" size="{made.foot_radius_m}" mass="{made.foot_kg}"
-                friction="{made.friction}"/></body>{"</body>" * len(joints)}</frame>""")
-    servos = [f'<position name="{one.label}" joint="{one.label}"/>' for one in legs.joints]
-    limit = made.servo_torque_nm
+            <geom name="leg{leg}_foot" size="{robot.foot_radius_m}" mass="{robot.foot_kg}"
+                friction="{robot.friction}"/></body>{"</body>" * len(joints)}</frame>""")
+    servos = [f'<position name="{joint.label}" joint="{joint.label}"/>' for joint in legs.joints]
+    limit = robot.servo_torque_nm
     return mujoco.MjSpec.from_string(f"""<mujoco>
         <compiler angle="radian" autolimits="true"/>
-        <option timestep="{made.dt_s}" integrator="implicitfast" jacobian="dense"/>
+        <option timestep="{robot.dt_s}" integrator="implicitfast" jacobian="dense"/>
         <default>
-            <joint armature="{made.joint_armature}" damping="{made.joint_damping}"/>
-            <position kp="{made.servo_kp}" kv="{made.servo_kv}" forcerange="{-limit} {limit}"/>
+            <joint armature="{robot.joint_armature}" damping="{robot.joint_damping}"/>
+            <position kp="{robot.servo_kp}" kv="{robot.servo_kv}" forcerange="{-limit} {limit}"/>
             <geom group="1" priority="1" contype="1" conaffinity="0"/>
         </default>
         <worldbody>
             <geom name="ground" type="plane" size="0 0 1" group="0" priority="0"
                 contype="0" conaffinity="1"/>
-            <body name="torso" pos="0 0 {made.body_height_m + made.foot_radius_m}">
+            <body name="torso" pos="0 0 {robot.body_height_m + robot.foot_radius_m}">
                 <freejoint name="torso"/>
-                <geom name="torso" type="cylinder" mass="{made.torso_kg}"
-                    size="{made.torso_radius_m} {made.torso_half_height_m}"/>
+                <geom name="torso" type="cylinder" mass="{robot.torso_kg}"
+                    size="{robot.torso_radius_m} {robot.torso_half_height_m}"/>
                 {"".join(bodies)}
             </body>
         </worldbody>
@@ -143,10 +143,10 @@ def _(made: WithTarsi) -> mujoco.MjSpec:
     </mujoco>""")
 
 
-def raced(made: Robot) -> hx.Race:
+def raced(robot: Robot) -> hx.Race:
     """Return a race of greedy alone, with physics and torques."""
-    gait = own_gait(made) if made.name in PRESETS else "left-right-origin"
-    return hx.race(["greedy"], gait=gait, robot=made, steps=STEPS)
+    gait = own_gait(robot) if robot.name in PRESETS else "left-right-origin"
+    return hx.race(["greedy"], gait=gait, robot=robot, steps=STEPS)
 
 
 def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatArray]:
@@ -158,7 +158,7 @@ def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatA
 
 @pytest.mark.test
 @pytest.mark.parametrize(
-    ("made", "joints"),
+    ("robot", "joints"),
     [
         pytest.param(robot({"n_legs": 8}), 24, id="eight legs"),
         pytest.param(robot("starfish"), 15, id="five legs in groups of two and one"),
@@ -167,10 +167,10 @@ def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatA
         pytest.param(WithTarsi(), 23, id="four joints in all legs but one"),
     ],
 )
-def test_other_legs_are_recorded_analysed_drawn_and_exported(made: Robot, joints: int) -> None:
-    race = raced(made)
+def test_other_legs_are_recorded_analysed_drawn_and_exported(robot: Robot, joints: int) -> None:
+    race = raced(robot)
     config, (lane,) = race.config, race.recording
-    legs, motion = legs_of(made), lane.steps[STEPS - 1].motion
+    legs, motion = legs_of(robot), lane.steps[STEPS - 1].motion
     labels = [joint.label for joint in legs.joints]
 
     assert lane.distance_m > 0.03
@@ -182,29 +182,29 @@ def test_other_legs_are_recorded_analysed_drawn_and_exported(made: Robot, joints
     assert figures is not None
     assert figures.effort is not None
     assert figures.effort.energy_j > 0
-    assert [one.leg for one in figures.legs] == list(range(1, len(legs) + 1))
+    assert [leg.leg for leg in figures.legs] == list(range(1, len(legs) + 1))
     assert 0.5 < figures.duty_factor < 0.95
-    assert figures.mass_kg == pytest.approx(float(robot_spec(made).compile().body_mass.sum()))
+    assert figures.mass_kg == pytest.approx(float(robot_spec(robot).compile().body_mass.sum()))
 
     columns, rows = table_of(config, lane)
     angles = rows[:, [columns.index(f"{label}_rad") for label in labels]]
     assert np.array_equal(angles[0].astype(np.float32), lane.rest_qpos[7:])
     foot_m = rows[:, columns.index(f"leg{len(legs)}_foot_z_m")]
-    assert foot_m[0] == pytest.approx(made.foot_radius_m, abs=0.004)
+    assert foot_m[0] == pytest.approx(robot.foot_radius_m, abs=0.004)
 
     log = b"".join(mcap_log(RecordedWalks.of_race(config, [lane]), "free"))
     reader = make_reader(io.BytesIO(log), decoder_factories=[DecoderFactory()])
     topics = ["/lane0/joint_states"]
     *_, (_, _, _, last) = reader.iter_decoded_messages(topics)
-    assert [one.name for one in last.joints] == labels
-    assert [one.position for one in last.joints] == motion.qpos[-1, 7:].tolist()
+    assert [joint.name for joint in last.joints] == labels
+    assert [joint.position for joint in last.joints] == motion.qpos[-1, 7:].tolist()
 
     servos = (Servo(label, 0, number, 1500, 100) for number, label in enumerate(labels))
     walk = servo_walk(RecordedWalks.of_race(config, [lane]), ServoMap("own", tuple(servos)))
     assert walk.pulses_us[-1].tolist() == np.rint(1500 + 100 * motion.qpos[-1, 7:]).tolist()
-    assert mujoco.MjModel.from_xml_string(robot_mjcf(made)).nu == joints
+    assert mujoco.MjModel.from_xml_string(robot_mjcf(robot)).nu == joints
 
-    drawn = RobotMesh(made).body_poses(lane.rest_qpos).positions
+    drawn = RobotMesh(robot).body_poses(lane.rest_qpos).positions
     assert len(drawn) == 2 + joints + len(legs)  # world and torso, links, feet
     assert 'id="segment-0"' in hx.view(race).page
 
@@ -216,14 +216,14 @@ def test_joints_that_are_held_straight_change_little() -> None:
 
 
 def test_what_happens_to_legs_happens_to_all_of_their_joints() -> None:
-    made = WithTarsi()
+    robot = WithTarsi()
     world = World((Limp(legs=(1,)), Lost(legs=(2,)), Stuck(leg=3, joint="tibia", angle_rad=-1.5)))
-    gait = resolve("left-right-origin", made.azimuths_deg)
-    model = MujocoSimulator(made, gait, FootGrid(), world=world).model
+    gait = resolve("left-right-origin", robot.azimuths_deg)
+    model = MujocoSimulator(robot, gait, FootGrid(), world=world).model
 
     is_powered = model.actuator_gainprm[:, 0] > 0
-    assert np.array_equal(is_powered, legs_of(made).leg_of_joint >= 2)
-    assert not any(model.geom(f"leg2_{part}").contype for part in ("coxa", "tarsus", "foot"))
+    assert np.array_equal(is_powered, legs_of(robot).leg_of_joint >= 2)
+    assert not any(model.geom(f"leg2_{link}").contype for link in ("coxa", "tarsus", "foot"))
 
 
 @dataclass(frozen=True)
@@ -232,14 +232,14 @@ class TwoJoints(Robot):
 
 
 class _TwoJointLegs(_LegsWithTarsi):
-    def __init__(self, made: TwoJoints) -> None:
+    def __init__(self, robot: TwoJoints) -> None:
         joints = [Joint(leg, name, (-1, 1)) for leg in range(1, 7) for name in ("hip", "knee")]
-        Legs.__init__(self, joints, [0.1] * len(made.legs))
+        Legs.__init__(self, joints, [0.1] * len(robot.legs))
 
 
 @legs_of.register
-def _(made: TwoJoints) -> Legs:
-    return _TwoJointLegs(made)
+def _(robot: TwoJoints) -> Legs:
+    return _TwoJointLegs(robot)
 
 
 def test_a_joint_that_a_robot_does_not_have_cannot_be_stuck() -> None:

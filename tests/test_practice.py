@@ -60,13 +60,13 @@ def test_worlds_robots_and_gaits_are_given_in_any_form() -> None:
 
 def test_records_come_as_they_happen() -> None:
     records = list(hx.iter_train("linear-model", record=True, evaluate_every=30, **QUICK))
-    steps = [one for one in records if isinstance(one, StepTaken)]
+    steps = [record for record in records if isinstance(record, StepTaken)]
     assert [step.step for step in steps] == list(range(1, 61))
     assert steps[0].motion is not None
     seen: list[object] = []
     done = hx.train("linear-model", evaluate_every=30, on_record=seen.append, **QUICK)
     assert len(seen) == len(records)
-    evaluations = [one.distance_m for one in records if isinstance(one, Evaluated)]
+    evaluations = [record.distance_m for record in records if isinstance(record, Evaluated)]
     assert [point.distance_m for point in done.curve] == evaluations
 
 
@@ -143,8 +143,8 @@ def test_invalid_changes_are_refused(agent: str, changes: Any, reason: str) -> N
 
 
 def test_numbers_may_be_those_of_numpy() -> None:
-    given: dict[str, Any] = {"seed": np.arange(4)[3], "alpha": np.float64(0.2)}
-    assert hx.train(**QUICK, **given).config == hx.train(**QUICK, seed=3, alpha=0.2).config
+    numbers: dict[str, Any] = {"seed": np.arange(4)[3], "alpha": np.float64(0.2)}
+    assert hx.train(**QUICK, **numbers).config == hx.train(**QUICK, seed=3, alpha=0.2).config
     gait = {"right_leg": np.int64(1), "left_leg": 2, "pairs": np.array([[1, 4], [2, 5], [3, 6]])}
     nested = hx.train(gait=gait, robot={"n_legs": np.int64(6)}, **QUICK)
     assert nested.config.gait == hx.Gait(1, 2, pairs=((1, 4), (2, 5), (3, 6)))
@@ -177,9 +177,9 @@ def test_a_table_of_another_agent_is_refused(agent: str, other: str) -> None:
 
 
 def test_a_training_comes_with_what_it_has_learned() -> None:
-    one, other = hx.train(**QUICK), hx.train("sarsa", **QUICK)
+    learned, other_training = hx.train(**QUICK), hx.train("sarsa", **QUICK)
     with pytest.raises(hx.InvalidInput, match=r"leave out table, .* by its name, 'q-learning'"):
-        hx.evaluate(one, table=other)
+        hx.evaluate(learned, table=other_training)
 
 
 def test_an_agent_is_found_by_other_processes() -> None:
@@ -210,7 +210,7 @@ def test_it_shows_itself() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "reason"),
+    ("arguments", "reason"),
     [
         ({"alhpa": 0.1}, "choose one of: gait, robot, .*steps, .*alpha"),
         ({"pace": 2}, "unknown argument of a training 'pace'"),
@@ -233,6 +233,6 @@ def test_it_shows_itself() -> None:
         ({"table": "nothing.npz"}, "cannot read the table nothing.npz"),
     ],
 )
-def test_invalid_arguments_are_refused(given: dict[str, Any], reason: str) -> None:
+def test_invalid_arguments_are_refused(arguments: dict[str, Any], reason: str) -> None:
     with pytest.raises(hx.HexapodError, match=reason):
-        hx.train(**{**QUICK, **given})
+        hx.train(**{**QUICK, **arguments})

@@ -18,7 +18,7 @@ def training() -> hx.Training:
 def test_the_race_is_that_of_its_training(training: hx.Training) -> None:
     race = hx.race([training, "greedy", hx.lane("look-ahead", depth=1)], steps=20)
     assert (race.config.gait, race.config.simulator) == ("left-right-vertical", "kinematic")
-    assert [one.agent for one in race.config.lanes] == ["q-learning", "greedy", "look-ahead"]
+    assert [lane.agent for lane in race.config.lanes] == ["q-learning", "greedy", "look-ahead"]
     ranks = [standing.rank for standing in race.standings]
     assert ranks == sorted(ranks)  # type: ignore[type-var]
     assert {standing.lane for standing in race.standings} == {0, 1, 2}
@@ -30,20 +30,20 @@ def test_the_race_is_that_of_its_training(training: hx.Training) -> None:
 
 def test_it_is_the_same_again(training: hx.Training) -> None:
     lanes: list[Any] = [training, hx.lane("sarsa", keep_learning=True), hx.RandomWalk]
-    one, other = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
-    assert [s.total_distance_m for s in one.standings] == [
-        s.total_distance_m for s in other.standings
+    first, second = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
+    assert [s.total_distance_m for s in first.standings] == [
+        s.total_distance_m for s in second.standings
     ]
 
 
 def test_its_hash_is_of_all_that_repeats(training: hx.Training) -> None:
     lanes: list[Any] = [training, hx.lane("look-ahead", depth=1), hx.lane("linear-model")]
-    one, other = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
-    assert one.result != other.result  # the times of decisions
-    assert one.recording_sha256 == other.recording_sha256
+    first, second = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
+    assert first.result != second.result  # the times of decisions
+    assert first.recording_sha256 == second.recording_sha256
     for change in ({"seed": 6}, {"robot": {"femur_m": 0.081}}, {"steps": 19}):
         changed = hx.race(lanes, **{**QUICK, "seed": 5, **change})
-        assert changed.recording_sha256 != one.recording_sha256
+        assert changed.recording_sha256 != first.recording_sha256
 
 
 def test_the_world_is_not_that_of_the_practice() -> None:
@@ -53,9 +53,9 @@ def test_the_world_is_not_that_of_the_practice() -> None:
 
 
 def test_steps_are_told() -> None:
-    told: list[None] = []
-    hx.race(["greedy", "wave"], on_step=lambda: told.append(None), **QUICK)
-    assert len(told) == 40
+    calls: list[None] = []
+    hx.race(["greedy", "wave"], on_step=lambda: calls.append(None), **QUICK)
+    assert len(calls) == 40
 
 
 def test_a_race_in_which_all_fail_has_no_ranking() -> None:
@@ -65,7 +65,7 @@ def test_a_race_in_which_all_fail_has_no_ranking() -> None:
 
 
 @pytest.mark.parametrize(
-    ("lanes", "given", "reason"),
+    ("lanes", "arguments", "reason"),
     [
         ("greedy", {}, r"lanes is a list, such as \[training, .*, not 'greedy'"),
         (None, {}, r"lanes is a list, .*, not None"),
@@ -77,9 +77,9 @@ def test_a_race_in_which_all_fail_has_no_ranking() -> None:
         (["greedy"], {"gait": "moonwalk"}, "unknown gait 'moonwalk'"),
     ],
 )
-def test_invalid_arguments_are_refused(lanes: Any, given: dict[str, Any], reason: str) -> None:
+def test_invalid_arguments_are_refused(lanes: Any, arguments: dict[str, Any], reason: str) -> None:
     with pytest.raises(hx.HexapodError, match=reason):
-        hx.race(lanes, **{**QUICK, **given})
+        hx.race(lanes, **{**QUICK, **arguments})
 
 
 def test_invalid_lanes_are_refused(training: hx.Training) -> None:

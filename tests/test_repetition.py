@@ -40,7 +40,7 @@ def test_each_setting_has_its_mean_and_goes_on_where_it_ended(tmp_path: Path) ->
 
 
 def test_one_value_is_a_list_of_one() -> None:
-    one = hx.experiment(
+    experiment = hx.experiment(
         "sweep",
         simulator="kinematic",
         seeds=1,
@@ -52,16 +52,16 @@ def test_one_value_is_a_list_of_one() -> None:
         steps=np.arange(5, 7),
         alpha=0.3,
     )
-    assert one.config.agents == ("q-learning",)
-    assert one.config.gaits == (hx.Gait(1, 2, "origin"),)
-    assert one.config.steps == (5, 6)
-    assert [robot.femur_m for robot in one.config.robots] == [0.081]
-    assert one.config.settings["alpha"] == (0.3,)
-    assert len(one.trials) == 3
+    assert experiment.config.agents == ("q-learning",)
+    assert experiment.config.gaits == (hx.Gait(1, 2, "origin"),)
+    assert experiment.config.steps == (5, 6)
+    assert [robot.femur_m for robot in experiment.config.robots] == [0.081]
+    assert experiment.config.settings["alpha"] == (0.3,)
+    assert len(experiment.trials) == 3
 
 
 @pytest.mark.parametrize(
-    ("given", "reason"),
+    ("arguments", "reason"),
     [
         ({"gaits": 3}, "gait is one of left-right-origin, .* or its legs, not 3"),
         ({"gaits": [["left-right-origin"]]}, r"or its legs, not \['left"),
@@ -75,9 +75,9 @@ def test_one_value_is_a_list_of_one() -> None:
         ({"worlds": 3}, 'a text such as "ice" or "limp:legs=1,4", not 3'),
     ],
 )
-def test_what_is_no_list_of_these_is_refused(given: dict[str, Any], reason: str) -> None:
+def test_what_is_no_list_of_these_is_refused(arguments: dict[str, Any], reason: str) -> None:
     with pytest.raises(hx.InvalidInput, match=reason):
-        hx.experiment("sweep", **{**SWEEP, **given})
+        hx.experiment("sweep", **{**SWEEP, **arguments})
 
 
 AGENT = """
@@ -98,8 +98,8 @@ def test_only_a_program_that_defines_agents_needs_a_guard(
 ) -> None:
     program = tmp_path / "program.py"
     agents = ", agents=[Mine]" if agent else ""
-    given = "simulator='kinematic', seeds=1, workers=1, gaits='left-right-origin', steps=5"
-    call = f"print(len(hx.experiment('sweep', {given}{agents}).trials))"
+    arguments = "simulator='kinematic', seeds=1, workers=1, gaits='left-right-origin', steps=5"
+    call = f"print(len(hx.experiment('sweep', {arguments}{agents}).trials))"
     program.write_text(f"import hexapods as hx\n{agent}\n{line}\n    {call}\n")
     done = subprocess.run(
         [sys.executable, program.name], cwd=tmp_path, capture_output=True, text=True, check=False
@@ -107,8 +107,8 @@ def test_only_a_program_that_defines_agents_needs_a_guard(
     if trials is not None:
         assert done.stdout == f"{trials}\n", done.stderr
     else:
-        told = "import program.py again for its agents, which would begin it again: put the lines"
-        assert told in done.stderr.splitlines()[-1]
+        error = "import program.py again for its agents, which would begin it again: put the lines"
+        assert error in done.stderr.splitlines()[-1]
         assert "distributed" not in done.stderr
 
 

@@ -119,7 +119,7 @@ def test_a_training_and_its_race_give_the_same_table_and_distances(
 
 
 @pytest.mark.parametrize(
-    ("name", "given", "total", "digest"),
+    ("name", "values", "total", "digest"),
     [
         ("table1", {"seeds": 2}, 112, "a2b8666e87ee9f87"),
         (
@@ -138,9 +138,9 @@ def test_a_training_and_its_race_give_the_same_table_and_distances(
     ],
 )
 def test_an_experiment_has_the_same_trials_with_the_same_seeds(
-    name: str, given: Mapping[str, Any], total: int, digest: str
+    name: str, values: Mapping[str, Any], total: int, digest: str
 ) -> None:
-    trials = list(Plan(experiment_config(name, given)).trials())
+    trials = list(Plan(experiment_config(name, values)).trials())
 
     assert len(trials) == total
     text = "|".join(f"{trial.key} {trial.config.training.seed}" for trial in trials)

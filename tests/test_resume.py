@@ -40,11 +40,11 @@ def assert_equal(resumed: hx.Training, unbroken: hx.Training) -> None:
     assert resumed.to_bytes() == unbroken.to_bytes()
 
 
-def interrupted(path: Path, at: int, agent: str, **given: Any) -> hx.Interrupted:
+def interrupted(path: Path, at: int, agent: str, **options: Any) -> hx.Interrupted:
     """Train until SIGINT after some steps, and return what is raised."""
     before = signal.getsignal(signal.SIGINT)
     with pytest.raises(hx.Interrupted) as raised:
-        hx.train(agent, checkpoint=path, on_record=At(at), **given)
+        hx.train(agent, checkpoint=path, on_record=At(at), **options)
     assert signal.getsignal(signal.SIGINT) is before
     return raised.value
 
@@ -67,11 +67,11 @@ def test_a_training_that_is_resumed_equals_the_unbroken_one(
 @pytest.mark.test
 @pytest.mark.parametrize("agent", ["q-learning", "expected-sarsa"])
 def test_in_mujoco_too(agent: str, tmp_path: Path) -> None:
-    given: dict[str, Any] = {**QUICK, "simulator": "mujoco", "steps": 12, "evaluate_every": 0}
+    options: dict[str, Any] = {**QUICK, "simulator": "mujoco", "steps": 12, "evaluate_every": 0}
     world = ["sensor-noise:sd_m=0.003", "slope:degrees=3:at=8"]
     disturbed: dict[str, Any] = {"tolerance": 0.03, "world": world}
-    interrupted(tmp_path / "q.npz", 7, agent, **given, **disturbed)
-    assert_equal(hx.resume(tmp_path / "q.npz"), hx.train(agent, **given, **disturbed))
+    interrupted(tmp_path / "q.npz", 7, agent, **options, **disturbed)
+    assert_equal(hx.resume(tmp_path / "q.npz"), hx.train(agent, **options, **disturbed))
 
 
 @pytest.mark.parametrize("at", [5, 10, 15, 30, 45])

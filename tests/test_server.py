@@ -68,8 +68,8 @@ def test_event_stream_begins_with_a_snapshot_continues_with_changes_and_is_resum
             steps.append(data["step"])
         if steps == [50, 100]:
             break
-    own = server.events(f"?run_id={run['id']}", last="99999999999999999")
-    _, snapshot, _ = next(own)
+    events_of_run = server.events(f"?run_id={run['id']}", last="99999999999999999")
+    _, snapshot, _ = next(events_of_run)
     assert [row["step"] for row in snapshot["evaluations"]] == [50, 100]
     missing = server.client.get("/api/v1/events?run_id=none")
     assert (missing.status_code, missing.headers["content-type"]) == (
@@ -148,8 +148,8 @@ def test_viewer_websocket_accepts_only_own_host_and_origin(guarded: Served) -> N
     server = guarded
     address = server.address.replace("http", "ws") + "/viewer/?view=leader"
     protocols: Any = [f"viser-v{viser.__version__}"]
-    own: Any = server.address
-    with connect(address, origin=own, subprotocols=protocols, proxy=None) as watching:
+    own_address: Any = server.address
+    with connect(address, origin=own_address, subprotocols=protocols, proxy=None) as watching:
         assert len(watching.recv(timeout=LONG_S)) > 100
         viewers = next(server.events())[1]["viewers"]
         assert viewers == 1

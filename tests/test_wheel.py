@@ -24,9 +24,9 @@ SHORTER = {"steps=500": "steps=20", 'world="ice"': 'world="ice", steps=5'}
 
 def start(*command: str | Path, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
     """Run a command without what this process was started with, in a folder."""
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(("HEXAPODS_", "PYTHON"))}
+    inherited = {k: v for k, v in os.environ.items() if not k.startswith(("HEXAPODS_", "PYTHON"))}
     return subprocess.run(
-        command, cwd=folder, env=kept | variables, capture_output=True, text=True, check=False
+        command, cwd=folder, env=inherited | variables, capture_output=True, text=True, check=False
     )
 
 
@@ -121,7 +121,7 @@ def test_it_serves(installed: Path, tmp_path: Path) -> None:
         try:
             assert server.stdout is not None
             said = iter(server.stdout.readline, "")
-            address = next(found[1] for line in said if (found := re.search(r"is at (\S+)", line)))
+            address = next(match[1] for line in said if (match := re.search(r"is at (\S+)", line)))
             with httpx2.Client(base_url=address, timeout=60, trust_env=False) as client:
                 assert "<title>" in client.get("/").text
                 assert client.get("/viewer/").status_code == 200

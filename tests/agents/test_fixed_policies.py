@@ -76,10 +76,10 @@ def test_a_wave_walks_as_far_as_a_robot_can_without_slip(gait: str | GaitSpec) -
 
 def test_a_wave_continues_from_its_state() -> None:
     gait = "left-right-vertical"
-    one, other = Wave(problem(gait)), Wave(problem(gait))
-    pairs_of(one, gait, 2)
-    other.load(one.state())
-    assert pairs_of(other, gait, 1) == [(1, 2)]
+    first, second = Wave(problem(gait)), Wave(problem(gait))
+    pairs_of(first, gait, 2)
+    second.load(first.state())
+    assert pairs_of(second, gait, 1) == [(1, 2)]
 
 
 def test_a_random_walk_takes_every_legal_step_equally_often() -> None:

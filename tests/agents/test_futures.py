@@ -29,14 +29,16 @@ def test_what_is_found_is_what_is_simulated(name: str) -> None:
     for _ in range(4):
         legal, before = walker.legal, walker.transitions
         action = walker.decide()
-        found = {one.action: one for one in walker.agent.futures()}
+        futures = {future.action: future for future in walker.agent.futures()}
 
-        assert action in found
-        assert set(found) <= set(legal)
-        assert all(one.sequences >= 1 for one in found.values())
-        assert walker.transitions - before >= len(found)
-        simulated = {one: walker.simulator.step(walker.state, one).reward_m for one in found}
-        assert {one: future.reward_m for one, future in found.items()} == simulated
+        assert action in futures
+        assert set(futures) <= set(legal)
+        assert all(future.sequences >= 1 for future in futures.values())
+        assert walker.transitions - before >= len(futures)
+        simulated = {
+            action: walker.simulator.step(walker.state, action).reward_m for action in futures
+        }
+        assert {action: future.reward_m for action, future in futures.items()} == simulated
         walker.carry_out(action)
 
 
@@ -45,34 +47,36 @@ def test_greedy_and_two_step_take_the_highest_return() -> None:
         walker = walker_of(name)
         action = walker.decide()
         assert isinstance(walker.agent, ExplainingSearch)
-        found = list(walker.agent.futures())
-        highest = max(one.return_m for one in found)
+        futures = list(walker.agent.futures())
+        highest = max(future.return_m for future in futures)
 
-        assert next(one.return_m for one in found if one.action == action) == highest
-        assert len(found) == 12
-        assert {(one.sequences, one.steps) for one in found} == {(12 ** (steps - 1), steps)}
+        assert next(future.return_m for future in futures if future.action == action) == highest
+        assert len(futures) == 12
+        assert {(future.sequences, future.steps) for future in futures} == {
+            (12 ** (steps - 1), steps)
+        }
 
 
 def test_two_step_adds_the_best_second_step() -> None:
     walker = walker_of("two-step")
     walker.decide()
     assert isinstance(walker.agent, ExplainingSearch)
-    for one in walker.agent.futures():
+    for future in walker.agent.futures():
         walker.set_state(walker.simulator.rest())
-        first = walker.carry_out(one.action).reward_m
+        first = walker.carry_out(future.action).reward_m
         second = max(walker.simulator.step(walker.state, a).reward_m for a in walker.legal)
-        assert one.return_m == first + second
+        assert future.return_m == first + second
 
 
 def test_what_a_beam_dropped_is_known_less_far() -> None:
     walker = walker_of("beam", width=2, depth=3)
     action = walker.decide()
     assert isinstance(walker.agent, ExplainingSearch)
-    found = {one.action: one for one in walker.agent.futures()}
+    futures = {future.action: future for future in walker.agent.futures()}
 
-    assert found[action].steps == 3
-    assert {one.steps for one in found.values()} >= {1, 3}
-    np.testing.assert_array_less(0, [one.sequences for one in found.values()])
+    assert futures[action].steps == 3
+    assert {future.steps for future in futures.values()} >= {1, 3}
+    np.testing.assert_array_less(0, [future.sequences for future in futures.values()])
 
 
 def test_each_search_says_what_it_compares() -> None:

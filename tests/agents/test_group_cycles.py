@@ -78,10 +78,10 @@ def test_other_cycles_are_tried_where_orders_earn_little_and_the_best_is_kept() 
 
     assert {policy for policy, _ in blocks} == set(range(6))
     assert bandit.kept == THIRD_TWICE
-    kept = [length for policy, length in blocks if policy == THIRD_TWICE]
-    assert kept[0] == 8  # two rounds of four
-    assert max(kept) == 96
-    assert sum(kept) > 400
+    lengths = [length for policy, length in blocks if policy == THIRD_TWICE]
+    assert lengths[0] == 8  # two rounds of four
+    assert max(lengths) == 96
+    assert sum(lengths) > 400
 
 
 def test_a_cycle_is_judged_in_the_second_half_of_its_block() -> None:
@@ -136,8 +136,8 @@ def test_a_saved_learner_of_cycles_goes_on_to_the_last_bit() -> None:
     for _ in train(resumed, config):
         pass
 
-    expected, found = (learner.walker.agent.state() for learner in (whole, resumed))
-    assert {k: v.tobytes() for k, v in found.items()} == {
+    expected, resumed_state = (learner.walker.agent.state() for learner in (whole, resumed))
+    assert {k: v.tobytes() for k, v in resumed_state.items()} == {
         k: v.tobytes() for k, v in expected.items()
     }
 
@@ -147,12 +147,12 @@ def test_a_frozen_copy_walks_in_the_cycle_that_was_kept() -> None:
     moved(agent, 300, 0.009)
     copy = LinearModel(PROBLEM, Plan(), order="cycles", explore=False)
     copy.load(agent.state())
-    kept = POLICIES[int(agent.state()["cycle_counts"][0])]
-    assert kept is not None
+    best_cycle = POLICIES[int(agent.state()["cycle_counts"][0])]
+    assert best_cycle is not None
 
-    groups = [copy.act(AT_HOME, LEGAL).group for _ in range(2 * len(kept))]
+    groups = [copy.act(AT_HOME, LEGAL).group for _ in range(2 * len(best_cycle))]
 
-    assert groups == [*kept, *kept]
+    assert groups == [*best_cycle, *best_cycle]
 
 
 def _broken() -> list[tuple[str, Any, str]]:

@@ -117,7 +117,7 @@ def test_informed_search_overtakes_greedy_on_the_stiff_robot(gait: str) -> None:
 
     assert (informed.total_distance_m or 0) >= 0.98 * (greedy.total_distance_m or 0)
     assert informed.simulated_transitions <= 3 * 50
-    at_time_out = [one.clocks.paper.finished_distance_m or 0 for one in (informed, greedy)]
+    at_time_out = [lane.clocks.paper.finished_distance_m or 0 for lane in (informed, greedy)]
     assert at_time_out[0] > at_time_out[1]
 
 
@@ -135,9 +135,9 @@ def test_forty_transitions_are_worth_two_steps_of_look_ahead(preset: str) -> Non
 
     assert (informed.total_distance_m or 0) >= TWO_STEP_M[preset]
     assert informed.simulated_transitions <= 40 * 50
-    for one in two_step:
-        assert (one.total_distance_m or 0) == pytest.approx(TWO_STEP_M[preset], abs=0.0006)
-        assert (informed.total_distance_m or 0) >= (one.total_distance_m or 0)
+    for lane in two_step:
+        assert (lane.total_distance_m or 0) == pytest.approx(TWO_STEP_M[preset], abs=0.0006)
+        assert (informed.total_distance_m or 0) >= (lane.total_distance_m or 0)
 
 
 @pytest.mark.parametrize("agent", ["informed", "mcts", "beam"])
@@ -145,10 +145,10 @@ def test_results_do_not_depend_on_the_number_of_threads(agent: str) -> None:
     def states(threads: int) -> list[bytes]:
         config = RaceConfig(gait="left-right-vertical", robot=HASTY, lanes=(lane_config(agent),))
         (walker,) = build_walkers(config, [None], threads=threads)
-        found = []
+        poses = []
         for _ in range(2):
             walker.carry_out(walker.decide())
-            found.append(walker.simulator.pose(walker.state).tobytes())
-        return found
+            poses.append(walker.simulator.pose(walker.state).tobytes())
+        return poses
 
     assert states(1) == states(2)

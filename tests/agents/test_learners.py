@@ -86,14 +86,14 @@ def moved(state: Cells, action: Action) -> tuple[Cells, float]:
 @cache
 def outcomes() -> Mapping[tuple[Cells, Action], tuple[Cells, float]]:
     """Return what follows each state and action, for all states that can be reached from home."""
-    found, open_states = {}, [(0,) * PAIRS]
+    results, open_states = {}, [(0,) * PAIRS]
     while open_states:
         state = open_states.pop()
         for action in legal_actions(state, CELLS):
-            found[state, action] = moved(state, action)
-        seen = {known for known, _ in found} | set(open_states)
-        open_states += {after for after, _ in found.values()} - seen
-    return found
+            results[state, action] = moved(state, action)
+        seen = {state for state, _ in results} | set(open_states)
+        open_states += {after for after, _ in results.values()} - seen
+    return results
 
 
 @cache
@@ -252,8 +252,8 @@ def test_evaluation_and_display_do_not_change_what_is_learned(agent: str) -> Non
         evaluate(watched, config, 0)
         watched.walker.action_values()
         snapshot(watched, config)
-    for one in (watched, unwatched):
-        for _ in train(one, config, record=one is watched):
+    for learner in (watched, unwatched):
+        for _ in train(learner, config, record=learner is watched):
             pass
 
     assert to_bytes(snapshot(watched, config)) == to_bytes(snapshot(unwatched, config))
@@ -358,8 +358,8 @@ def test_a_file_that_lacks_an_array_is_refused(agent: str) -> None:
 def test_every_agent_looks_different() -> None:
     colors = colors_of(list(BUILT_IN))
     assert len({title_of(agent) for agent in BUILT_IN}) == len(set(colors)) == len(BUILT_IN)
-    own = {getattr(find(agent), "color", None) for agent in BUILT_IN}
-    assert set(colors) == own
+    declared_colors = {getattr(find(agent), "color", None) for agent in BUILT_IN}
+    assert set(colors) == declared_colors
 
 
 def test_every_agent_says_what_it_does_in_a_sentence(agent: str) -> None:

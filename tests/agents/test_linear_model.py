@@ -50,10 +50,10 @@ def experience(
     agent.learn(Transition(before, action, reward_m, before, LEGAL))
 
 
-def practice(simulator: Any = "kinematic", **given: Any) -> TrainingConfig:
+def practice(simulator: Any = "kinematic", **options: Any) -> TrainingConfig:
     return training_config(
         "linear-model",
-        **{"gait": "left-right-vertical", "simulator": simulator, "evaluate_every": 0, **given},
+        **{"gait": "left-right-vertical", "simulator": simulator, "evaluate_every": 0, **options},
     )
 
 
@@ -194,8 +194,8 @@ def test_a_saved_learner_continues_identically() -> None:
 
     assert resumed.walker.state.distance_m == whole.walker.state.distance_m
     expected = whole.walker.agent.state()
-    found = resumed.walker.agent.state()
-    assert {k: v.tobytes() for k, v in found.items()} == {
+    actual = resumed.walker.agent.state()
+    assert {k: v.tobytes() for k, v in actual.items()} == {
         k: v.tobytes() for k, v in expected.items()
     }
 
@@ -255,6 +255,8 @@ def test_it_walks_with_any_number_of_groups(robot: str, gait: Any, expected_m: f
     """By the law without slip, in steps 51 to 100 of its life."""
     config = practice(gait=read_gait(gait), robot=PRESETS[robot], steps=100)
     learner = build_learner(config)
-    rewards_m = [one.reward_m for one in train(learner, config) if isinstance(one, StepTaken)]
+    rewards_m = [
+        record.reward_m for record in train(learner, config) if isinstance(record, StepTaken)
+    ]
 
     assert sum(rewards_m[50:]) > expected_m

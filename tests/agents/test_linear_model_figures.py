@@ -39,7 +39,9 @@ def life(gait: str, robot: str, steps: int, prior: str) -> tuple[list[float], fl
         prior=prior,
     )
     learner = build_learner(config)
-    rewards = [one.reward_m for one in train(learner, config) if isinstance(one, StepTaken)]
+    rewards = [
+        record.reward_m for record in train(learner, config) if isinstance(record, StepTaken)
+    ]
     return rewards, evaluate(learner, config, 0.0).distance_m
 
 

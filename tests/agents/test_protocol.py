@@ -78,16 +78,16 @@ def test_agent_chooses_legal_actions_in_each_observation_mode(
         action = walker.decide()
         assert action in walker.legal
         assert observed[action.group] != action.cell
-        assert [type(part) for part in action] == [int, int]
+        assert [type(number) for number in action] == [int, int]
         walker.carry_out(action)
 
 
 @pytest.mark.test
 def test_agent_is_deterministic_for_a_seed(agent: str) -> None:
-    one, other = learner(agent, seed=5), learner(agent, seed=5)
+    first, second = learner(agent, seed=5), learner(agent, seed=5)
 
-    assert walk(one, steps_for(agent)) == walk(other, steps_for(agent))
-    assert written(one) == written(other)
+    assert walk(first, steps_for(agent)) == walk(second, steps_for(agent))
+    assert written(first) == written(second)
 
 
 @pytest.mark.test

@@ -87,9 +87,9 @@ def test_epsilon_is_the_share_of_random_actions() -> None:
     chosen = Counter(agent.act((0, 0, 0), legal) for _ in range(12_000))
 
     assert set(chosen) == set(legal)
-    others = [count for action, count in chosen.items() if action != (2, 3)]
-    assert sum(others) == pytest.approx(12_000 * 0.24 * 11 / 12, rel=0.05)
-    assert all(count == pytest.approx(240, rel=0.3) for count in others)
+    other_counts = [count for action, count in chosen.items() if action != (2, 3)]
+    assert sum(other_counts) == pytest.approx(12_000 * 0.24 * 11 / 12, rel=0.05)
+    assert all(count == pytest.approx(240, rel=0.3) for count in other_counts)
 
 
 @pytest.mark.parametrize(

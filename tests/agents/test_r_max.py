@@ -65,8 +65,8 @@ def test_a_known_pair_is_believed_for_ever() -> None:
     agent.learn(step(A, FIRST, 0.004, A))
     agent.learn(step(A, FIRST, -1.0, A))
     agent.learn(step(A, FIRST, -1.0, A))
-    (known,) = agent.state()["model_rewards"][:, 0][agent.state()["model_pairs"][:, 2] == 2]
-    assert known == pytest.approx(0.004)
+    (reward,) = agent.state()["model_rewards"][:, 0][agent.state()["model_pairs"][:, 2] == 2]
+    assert reward == pytest.approx(0.004)
     assert agent.visits(A)[FIRST] == 4
 
 

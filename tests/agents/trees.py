@@ -44,9 +44,11 @@ class Graph:
         self, nodes: Sequence[Node], actions: Sequence[Action]
     ) -> tuple[Sequence[Node], FloatArray]:
         self.calls.append(len(actions))
-        found = [
+        children = [
             self._world[node.name][action.cell]  # type: ignore[attr-defined]
             for node, action in zip(nodes, actions, strict=True)
         ]
-        self.visited += [name for name, _ in found]
-        return [Place(name, self._world) for name, _ in found], np.array([r for _, r in found])
+        self.visited += [name for name, _ in children]
+        return [Place(name, self._world) for name, _ in children], np.array(
+            [r for _, r in children]
+        )

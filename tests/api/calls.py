@@ -38,7 +38,7 @@ class WholeAnswers(httpx2.BaseTransport):
     async def _answer(self, request: httpx2.Request) -> httpx2.Response:
         answer = await self._app.handle_async_request(request)
         assert isinstance(answer.stream, httpx2.AsyncByteStream)
-        body = b"".join([part async for part in answer.stream])
+        body = b"".join([chunk async for chunk in answer.stream])
         return httpx2.Response(answer.status_code, headers=answer.headers, stream=ByteStream(body))
 
 

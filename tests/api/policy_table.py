@@ -253,7 +253,7 @@ async def _send(
         "run_id": role.run,
         **fill,
     }
-    filled = prefix + re.sub(r"\{(\w+)\}", lambda found: values.get(found[1], "x"), path)
+    filled = prefix + re.sub(r"\{(\w+)\}", lambda match: values.get(match[1], "x"), path)
     headers = {"host": "127.0.0.1:8000", "x-requested-with": "x", **role.headers}
     kind = "websocket" if method == "WS" else "http"
     scope: Scope = {
@@ -294,7 +294,7 @@ def _answer(sent: list[Message]) -> tuple[str, str]:
         return start["type"].removeprefix("websocket."), start.get("reason", "")
     headers = {name.decode(): value.decode() for name, value in start["headers"]}
     cookie = " expires a cookie" if "Max-Age=0" in headers.get("set-cookie", "") else ""
-    body = b"".join(one.get("body", b"") for one in sent[1:])
+    body = b"".join(message.get("body", b"") for message in sent[1:])
     if start["status"] == PASSED:
         return f"passed{cookie}", json.loads(body)
     if headers.get("content-type") == "application/problem+json":

@@ -78,8 +78,8 @@ def test_questions_of_spectators_do_not_delay_what_spectators_read() -> None:
         app = ConcurrencyLimit(work, WorkSlots())
         questions = [scope("spectator", str(n), "POST", policy=ASKED) for n in range(20)]
         tasks = [
-            asyncio.ensure_future(app(one, nothing, ignore))
-            for one in (*questions, scope("spectator", "a"))
+            asyncio.ensure_future(app(request_scope, nothing, ignore))
+            for request_scope in (*questions, scope("spectator", "a"))
         ]
         await asyncio.sleep(0.01)
         for task in tasks:
@@ -104,7 +104,9 @@ def test_requests_do_not_delay_probes() -> None:
         app = ConcurrencyLimit(work, WorkSlots())
         requests = [scope("spectator", "a") for _ in range(50)]
         requests += [scope("spectator", "a", path="/readyz", policy=PROBED) for _ in range(50)]
-        tasks = [asyncio.ensure_future(app(one, nothing, ignore)) for one in requests]
+        tasks = [
+            asyncio.ensure_future(app(request_scope, nothing, ignore)) for request_scope in requests
+        ]
         await asyncio.sleep(0.01)
         for task in tasks:
             task.cancel()
@@ -133,7 +135,9 @@ def test_files_that_take_long_delay_nothing_else() -> None:
             for path in paths
         ]
         requests += [scope("spectator", "a"), scope("operator", "a", "POST", STOP)]
-        tasks = [asyncio.ensure_future(app(one, nothing, ignore)) for one in requests]
+        tasks = [
+            asyncio.ensure_future(app(request_scope, nothing, ignore)) for request_scope in requests
+        ]
         await asyncio.sleep(0.01)
         for task in tasks:
             task.cancel()
@@ -225,8 +229,8 @@ def test_each_kind_of_work_has_slots_of_its_own() -> None:
         of_routes = policies(create_app(Settings(data=Path("unused")), store))
 
     def kind(role: str, method: str, path: str, query: bytes = b"") -> str:
-        asked = scope(role, "a", policy=of_routes[method, path])
-        return work_of({**asked, "query_string": query}).name
+        request_scope = scope(role, "a", policy=of_routes[method, path])
+        return work_of({**request_scope, "query_string": query}).name
 
     assert {path: kind("spectator", "get", path) for path in kinds} == kinds
     recording = "/api/v1/races/{run_id}/recording"
@@ -256,9 +260,9 @@ def test_nothing_is_begun_for_a_client_that_has_left() -> None:
         for address in ["first"] * READING + ["leaves"] * 5 + ["stays"]:
             client, server = socket.socketpair()
             connection = table.admit(address, server.fileno())
-            asked = scope("spectator", address)
-            asked["state"]["connection"] = connection
-            tasks.append(asyncio.ensure_future(app(asked, nothing, ignore)))
+            request_scope = scope("spectator", address)
+            request_scope["state"]["connection"] = connection
+            tasks.append(asyncio.ensure_future(app(request_scope, nothing, ignore)))
             clients.append((client, server))
         await asyncio.sleep(0)
         for client, _ in clients[READING:-1]:
@@ -266,8 +270,8 @@ def test_nothing_is_begun_for_a_client_that_has_left() -> None:
         may_end.set()
         await asyncio.wait_for(asyncio.gather(*tasks), 5)
         for pair in clients:
-            for one in pair:
-                one.close()
+            for end in pair:
+                end.close()
         return begun, len(tasks)
 
     begun, count = asyncio.run(scenario())
@@ -286,12 +290,13 @@ def test_who_cannot_wait_is_told_why() -> None:
             answers.append(message)
 
         slots = WorkSlots()
-        app, asked = ConcurrencyLimit(work, slots), scope("spectator", "a")
+        app, request_scope = ConcurrencyLimit(work, slots), scope("spectator", "a")
         tasks = [
-            asyncio.ensure_future(app(asked, nothing, ignore)) for _ in range(READING + MAX_WAITING)
+            asyncio.ensure_future(app(request_scope, nothing, ignore))
+            for _ in range(READING + MAX_WAITING)
         ]
         await asyncio.sleep(0)
-        await app(asked, nothing, keep)
+        await app(request_scope, nothing, keep)
         last = asyncio.ensure_future(app(scope("spectator", "b"), nothing, keep))
         await asyncio.sleep(0)
         slots.close()

@@ -58,8 +58,10 @@ def resolved(described: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any
     """Resolve a reference to a response component."""
     if "$ref" not in answer:
         return answer
-    found: dict[str, Any] = described["components"]["responses"][answer["$ref"].rpartition("/")[2]]
-    return found
+    component: dict[str, Any] = described["components"]["responses"][
+        answer["$ref"].rpartition("/")[2]
+    ]
+    return component
 
 
 def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> None:
@@ -275,5 +277,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     assert snapshot.raw_data is not None
     # A viewer connects to the stage only in a browser, and a room has a stage of its own.
     assert received | {"snapshot", "viewers", "room"} == set(models)
-    for name, data in [("snapshot", snapshot.raw_data), *((one.event, one.data) for one in events)]:
+    for name, data in [
+        ("snapshot", snapshot.raw_data),
+        *((event.event, event.data) for event in events),
+    ]:
         TypeAdapter(models[name]).validate_json(data)

@@ -30,7 +30,7 @@ def test_values_are_taken_as_they_are() -> None:
 
 
 def test_a_session_is_that_of_the_port_the_client_has_called() -> None:
-    both = scope("hexapods_operator_8000=x; __Host-hexapods_operator_443=y")
-    assert SessionCookie(both, is_secure=False, path="").value == "x"
+    request_scope = scope("hexapods_operator_8000=x; __Host-hexapods_operator_443=y")
+    assert SessionCookie(request_scope, is_secure=False, path="").value == "x"
     public = scope("hexapods_operator_8000=x; __Host-hexapods_operator_443=y", host="robots.test")
     assert SessionCookie(public, is_secure=True, path="").value == "y"

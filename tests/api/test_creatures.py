@@ -14,8 +14,8 @@ from tests.quick_robot import QUICK_STEPS
 @pytest.mark.parametrize("name", ["starfish", "centipede"])
 @needs("explanations", "exports")
 def test_a_creature_is_trained_raced_explained_and_exported(name: str, api: Api) -> None:
-    made = CREATURES[name].robot
-    gait = resolve(CREATURES[name].gait, made.azimuths_deg)
+    robot = CREATURES[name].robot
+    gait = resolve(CREATURES[name].gait, robot.azimuths_deg)
     walk: dict[str, Any] = {
         "gait": gait_as_json(CREATURES[name].gait),
         "robot": {"preset": name, **QUICK_STEPS},
@@ -23,7 +23,7 @@ def test_a_creature_is_trained_raced_explained_and_exported(name: str, api: Api)
     }
     trained = api.finished(api.start("/trainings", {**walk, "steps": 30, "evaluate_every": 15}))
     lanes = [{"agent": "q-learning", "training_id": trained["id"]}, {"agent": "linear-model"}]
-    limp = {"kind": "limp", "legs": [len(made.legs)], "at_step": 3}
+    limp = {"kind": "limp", "legs": [len(robot.legs)], "at_step": 3}
     race = api.finished(
         api.start("/races", {**walk, "lanes": lanes, "steps": 6, "disturbances": [limp]})
     )
@@ -33,9 +33,9 @@ def test_a_creature_is_trained_raced_explained_and_exported(name: str, api: Api)
     table = api.get(f"/trainings/{trained['id']}/table", params={"step": 30})
     assert table["pairs"] == explained["pairs"]
     figures = api.get(f"/runs/{race['id']}/gait")["lanes"][0]["figures"]
-    assert [leg["leg"] for leg in figures["legs"]] == list(range(1, len(made.legs) + 1))
+    assert [leg["leg"] for leg in figures["legs"]] == list(range(1, len(robot.legs) + 1))
     head = api.call("GET", f"/runs/{race['id']}/trajectory").text.split("\r\n")[0]
-    assert f"leg{len(made.legs)}_tibia_rad" in head
+    assert f"leg{len(robot.legs)}_tibia_rad" in head
     for path in (f"/runs/{race['id']}/mcap", f"/runs/{race['id']}/page"):
         assert api.call("GET", path).status_code == 200
     code = api.get(f"/runs/{race['id']}/code")

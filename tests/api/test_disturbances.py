@@ -53,12 +53,12 @@ def test_something_happens_while_a_training_runs(api: Api) -> None:
     run = api.slow_training(name="noisy")
     response = disturb(api, run, {"kind": "sensor-noise", "sd_m": 0.004})
     assert response.status_code == 202, response.text
-    made = response.json()
+    disturbance = response.json()
     now = api.look(run)
-    assert made == {"kind": "sensor-noise", "at_step": made["at_step"], "sd_m": 0.004}
-    assert made["at_step"] > 0
+    assert disturbance == {"kind": "sensor-noise", "at_step": disturbance["at_step"], "sd_m": 0.004}
+    assert disturbance["at_step"] > 0
     # The feet were measured already before the next step.
-    assert now["changes"] == [{"step": made["at_step"] - 1, "disturbance": made}]
+    assert now["changes"] == [{"step": disturbance["at_step"] - 1, "disturbance": disturbance}]
 
     paused = api.tell(run, "pause").json()
     for sd_m in (0.01, 0.0):  # the second replaces the first, which began in the same step
@@ -106,7 +106,7 @@ def test_an_end_after_the_run_is_refused_wherever_one_is_asked_for(api: Api) -> 
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("body", "words"),
     [
         ({"disturbances": [{**LIMP, "at_step": 50}]}, "at_step must be from 0 to 49"),
         ({"disturbances": [{**LIMP, "at_step": 9, "until_step": 9}]}, "must be over at_step, 9"),
@@ -126,9 +126,9 @@ def test_an_end_after_the_run_is_refused_wherever_one_is_asked_for(api: Api) -> 
     ],
 )
 def test_a_race_in_an_impossible_world_is_refused(
-    api: Api, given: dict[str, Any], words: str
+    api: Api, body: dict[str, Any], words: str
 ) -> None:
-    refused(api.call("POST", "/races", json={**MUJOCO, **given}), 422, words)
+    refused(api.call("POST", "/races", json={**MUJOCO, **body}), 422, words)
 
 
 @pytest.fixture(scope="module")
@@ -239,15 +239,15 @@ def test_a_searcher_knows_the_start_unless_its_lane_says_otherwise() -> None:
         branch_from=Branch("x", 3),
     )
     *_, recorded = record_race(build_walkers(config, [None] * 4), config, lambda: 0.0)
-    known, same, told, unaware = (lane.distance_m for lane in recorded)
+    knows_start, same, knows_world, unaware = (lane.distance_m for lane in recorded)
 
     assert config.world == named_world("limp-pair")
-    assert known == same == told > unaware + 0.03
+    assert knows_start == same == knows_world > unaware + 0.03
 
 
 def test_options_tell_what_can_happen(api: Api) -> None:
     options = api.get("/options")
-    worlds = {one["name"]: one for one in options["worlds"]}
+    worlds = {world_option["name"]: world_option for world_option in options["worlds"]}
     assert worlds["flat"]["disturbances"] == []
     assert worlds["limp-pair"]["disturbances"] == [{**LIMP, "at_step": 0}]
     assert worlds["slope"]["description"] == "The track rises by 8°."
@@ -261,7 +261,7 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     )  # fmt: skip
     slope = kinds["slope"]["fields"]
     assert list(slope) == ["degrees", "direction_deg", "at_step", "until_step"]
-    assert [one["is_required"] for one in slope.values()] == [True, False, False, False]
+    assert [field["is_required"] for field in slope.values()] == [True, False, False, False]
     assert (slope["degrees"]["maximum"], slope["degrees"]["unit"]) == (30, "°")
     assert (kinds["slope"]["size"], kinds["slope"]["nothing"]) == ("degrees", 0)
     assert (kinds["weak"]["size"], kinds["weak"]["nothing"]) == ("torque_share", 1)
@@ -289,8 +289,8 @@ def test_options_tell_what_can_happen(api: Api) -> None:
 def test_options_are_compressed_once_and_revalidated(api: Api) -> None:
     first = api.call("GET", "/options", headers={"Accept-Encoding": "gzip"})
     assert first.headers["content-encoding"] == "gzip"
-    known = {"Accept-Encoding": "gzip", "If-None-Match": first.headers["etag"]}
-    assert api.call("GET", "/options", headers=known).status_code == 304
+    conditional = {"Accept-Encoding": "gzip", "If-None-Match": first.headers["etag"]}
+    assert api.call("GET", "/options", headers=conditional).status_code == 304
     plain = api.call("GET", "/options", headers={"Accept-Encoding": "identity"})
     assert plain.json() == first.json()
 
@@ -299,8 +299,8 @@ def test_options_are_compressed_once_and_revalidated(api: Api) -> None:
 def test_robot_differs_from_its_design_by_the_tolerance(api: Api) -> None:
     body = {**MUJOCO, "agent": "q-learning", "steps": 2, "evaluate_every": 0, "world": "limp-pair"}
     plain, built, again = (
-        api.finished(api.start("/trainings", {**body, "seed": 3, **given}))
-        for given in ({}, {"tolerance": 0.1}, {"tolerance": 0.1})
+        api.finished(api.start("/trainings", {**body, "seed": 3, **extra}))
+        for extra in ({}, {"tolerance": 0.1}, {"tolerance": 0.1})
     )
 
     assert (plain["config"]["tolerance"], built["config"]["tolerance"]) == (0.0, 0.1)

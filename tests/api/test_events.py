@@ -57,8 +57,8 @@ class Stream:
 def services(tmp_path: Path) -> Iterator[Services]:
     settings = Settings(data=tmp_path)
     with open_store(settings) as store:
-        made: Services = create_app(settings, store).state.services
-        yield made
+        services: Services = create_app(settings, store).state.services
+        yield services
 
 
 class BlockedRead:
@@ -90,17 +90,17 @@ def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
     services: Services, monkeypatch: pytest.MonkeyPatch, moment: str
 ) -> None:
     services.store.create(training("a"))
-    held = BlockedRead(services, monkeypatch, moment)
+    blocked = BlockedRead(services, monkeypatch, moment)
 
     async def test() -> None:
         async with Stream(services) as stream:
             first = asyncio.create_task(stream.next())
             # The event loop is not blocked meanwhile.
-            assert await asyncio.to_thread(held.reached.wait, LONG_S)
+            assert await asyncio.to_thread(blocked.reached.wait, LONG_S)
             change(services, "running")
             services.bus.publish("evaluation", {"run_id": "a", "step": 1}, "a")
             change(services, "finished")
-            held.go_on.set()
+            blocked.go_on.set()
             snapshot = await first
             assert snapshot.event == "snapshot"
             shown = snapshot.data["runs"][0]["state"]
@@ -112,7 +112,7 @@ def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
             ]
 
     asyncio.run(test())
-    assert held.thread is not threading.main_thread()
+    assert blocked.thread is not threading.main_thread()
 
 
 def test_snapshot_is_read_and_encoded_off_the_event_loop(

@@ -75,22 +75,22 @@ def test_unread_responses_are_complete_within_the_share_and_refused_beyond(port:
 
         received = 0
         while received < LARGE:
-            part = readers[0].recv(1 << 16)
-            assert part
-            received += part.count(b"x")
+            chunk = readers[0].recv(1 << 16)
+            assert chunk
+            received += chunk.count(b"x")
         assert send_request(stack, port, "GET /large", b"\r\n").recv(12) == b"HTTP/1.1 200"
 
 
 def test_unfinished_bodies_are_refused_beyond_the_share(port: int) -> None:
     with ExitStack() as stack:
         length = f"Content-Length: {64 * MB}\r\n\r\n".encode()
-        held = BODIES_SHARE_BYTES // (16 * MB)
+        fitting = BODIES_SHARE_BYTES // (16 * MB)
         senders = [
-            send_request(stack, port, "POST /api/v1/import", length) for _ in range(held + 1)
+            send_request(stack, port, "POST /api/v1/import", length) for _ in range(fitting + 1)
         ]
-        for sender in senders[:held]:
+        for sender in senders[:fitting]:
             sender.sendall(bytes(16 * MB - 256 * 1024))
         time.sleep(0.5)
         with suppress(OSError):  # the server closes the connection during the send
-            senders[held].sendall(bytes(16 * MB))
-        assert senders[held].recv(12) == b"HTTP/1.1 429"
+            senders[fitting].sendall(bytes(16 * MB))
+        assert senders[fitting].recv(12) == b"HTTP/1.1 429"

@@ -45,7 +45,7 @@ def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
     for path, methods in api.client.get("/openapi.json").json()["paths"].items():
         if "post" not in methods:
             continue
-        headers = {one["name"] for one in methods["post"].get("parameters", ())}
+        headers = {parameter["name"] for parameter in methods["post"].get("parameters", ())}
         # Joins of rooms have a limit of their own.
         if ("idempotency-key" in headers and "/rooms/" not in path) or path.endswith(_START):
             starts.add(path)
@@ -95,18 +95,18 @@ def test_session_works_in_spite_of_wrong_guesses_from_its_address(serve: Serve) 
 def test_metrics_have_the_prometheus_format(api: Api, trained: dict[str, Any]) -> None:
     answer = api.client.get("/metrics")
     assert answer.headers["content-type"].startswith("text/plain")
-    found = {
+    samples = {
         (sample.name, *sample.labels.values()): sample.value
         for family in text_string_to_metric_families(answer.text)
         for sample in family.samples
     }
-    assert found["hexapods_runs", "finished"] >= 1
-    assert found["hexapods_runs", "paused"] == 0
-    assert found["hexapods_steps_total",] >= trained["progress"]["done"]
+    assert samples["hexapods_runs", "finished"] >= 1
+    assert samples["hexapods_runs", "paused"] == 0
+    assert samples["hexapods_steps_total",] >= trained["progress"]["done"]
     for name in ("steps_per_second", "queue_depth", "viewers", "frames_sent_total"):
-        assert found[f"hexapods_{name}",] >= 0
-    assert found["hexapods_frames_merged_total",] >= 0
-    assert found["process_start_time_seconds",] > 0
+        assert samples[f"hexapods_{name}",] >= 0
+    assert samples["hexapods_frames_merged_total",] >= 0
+    assert samples["process_start_time_seconds",] > 0
 
 
 def test_metrics_are_readable_by_spectators(serve: Serve) -> None:

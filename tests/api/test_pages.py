@@ -142,8 +142,8 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
 def imported_later(script: Path, folder: Path) -> list[str]:
     """Return the modules that a script imports when they are first needed."""
     # In comments stand types of modules.
-    found = re.findall(r'import\("(\.[^"]+)"\)(?:\)?\s*\.then\(|[;,])', script.read_text("utf-8"))
-    modules = [(script.parent / path).resolve() for path in found]
+    imports = re.findall(r'import\("(\.[^"]+)"\)(?:\)?\s*\.then\(|[;,])', script.read_text("utf-8"))
+    modules = [(script.parent / path).resolve() for path in imports]
     return [module.relative_to(folder.resolve().parent).as_posix() for module in modules]
 
 
@@ -174,7 +174,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     # Of pages of features.
     pages = ("features/classroom/room/main.js", "features/tournaments/main.js")
     opened |= {f"static/{path}" for path in pages if (folder / path).exists()}
-    later = {path for one in opened for path in imported_modules(one, folder)} - modules
+    later = {path for module in opened for path in imported_modules(module, folder)} - modules
 
     assert {folder.parent / path for path in (*modules, *later)} == {*scripts}
     assert opened <= later

@@ -76,10 +76,10 @@ def asked(app: FastAPI, method: str, path: str) -> tuple[list[RoutePolicy], int,
 
 def test_guards_get_the_policy_of_the_route_before_its_body_is_read() -> None:
     seen, status, reads = asked(small_app(), "POST", "/api/things/1")
-    assert [(one.access, one.starts) for one in seen] == [(OPERATOR, True)]
+    assert [(policy.access, policy.starts) for policy in seen] == [(OPERATOR, True)]
     assert (status, reads) == (401, 0)
     seen, status, _ = asked(small_app(), "GET", "/page")
-    assert [one.access for one in seen] == [PUBLIC]
+    assert [policy.access for policy in seen] == [PUBLIC]
     assert status == 200
 
 
@@ -97,7 +97,7 @@ def test_what_no_route_answers_is_guarded(
     method: str, path: str, access: Access, status: int
 ) -> None:
     seen, got, _ = asked(small_app(), method, path)
-    assert [one.access for one in seen] == [access]
+    assert [policy.access for policy in seen] == [access]
     assert got == status
 
 

@@ -15,7 +15,7 @@ from tests.api.policy_table import TABLE, recorded
 
 def outcomes(table: dict[str, Any]) -> dict[tuple[str, str], str]:
     """Return the outcome, with its sentence, by operation and case."""
-    found: dict[tuple[str, str], str] = {}
+    by_case: dict[tuple[str, str], str] = {}
     for operation, of_operation in table["operations"].items():
         for outcome, group in of_operation.items():
             kind, _, number = outcome.removesuffix("]").partition(" [")
@@ -23,8 +23,8 @@ def outcomes(table: dict[str, Any]) -> dict[tuple[str, str], str]:
             for line in table["groups"][group]:
                 server, _, roles = line.partition(": ")
                 for role in roles.split(" | "):
-                    found[operation, f"{server}: {role}"] = f"{kind} {said}".strip()
-    return found
+                    by_case[operation, f"{server}: {role}"] = f"{kind} {said}".strip()
+    return by_case
 
 
 def test_the_guards_decide_as_the_table_says() -> None:

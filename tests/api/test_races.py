@@ -59,11 +59,11 @@ def test_race_trains_its_learner_first(raced: dict[str, Any], api: Api) -> None:
 
 def test_race_is_reproducible(raced: dict[str, Any], api: Api) -> None:
     again = api.finished(api.race(lanes=LANES))
-    for one, other in zip(raced["result"]["lanes"], again["result"]["lanes"], strict=True):
+    for lane, same_lane in zip(raced["result"]["lanes"], again["result"]["lanes"], strict=True):
         for name in ("total_distance_m", "simulated_transitions", "steps"):
-            assert one[name] == other[name]
+            assert lane[name] == same_lane[name]
         for clock in ("paper", "free"):
-            assert one["clocks"][clock] == other["clocks"][clock]
+            assert lane["clocks"][clock] == same_lane["clocks"][clock]
 
 
 def test_a_race_has_one_hash_over_rest_in_the_library_and_on_the_command_line(
@@ -72,9 +72,11 @@ def test_a_race_has_one_hash_over_rest_in_the_library_and_on_the_command_line(
     lanes = [{"agent": "q-learning", "training": PRACTICE}, {"agent": "greedy"}]
     raced = api.finished(api.race(lanes=lanes, steps=30, seed=4))
 
-    given: dict[str, Any] = WALK
-    race = hx.race([hx.train(**given, steps=100, seed=4), "greedy"], **given, steps=30, seed=4)
-    walk = [part for name, value in WALK.items() for part in (f"--{name}", value)]
+    walk_fields: dict[str, Any] = WALK
+    race = hx.race(
+        [hx.train(**walk_fields, steps=100, seed=4), "greedy"], **walk_fields, steps=30, seed=4
+    )
+    walk = [word for name, value in WALK.items() for word in (f"--{name}", value)]
     output("train", *walk, "--steps", "100", "--seed", "4", "--out", "q.npz", folder=tmp_path)
     options = ("--lane", "q-learning=q.npz", "--lane", "greedy", "--steps", "30", "--seed", "4")
     printed = output("race", *walk, *options, folder=tmp_path, run=in_process)
@@ -221,9 +223,11 @@ def test_recording_matches_its_arrays(api: Api, raced: dict[str, Any]) -> None:
     assert len(data.content) < 400_000
     with np.load(io.BytesIO(data.content), allow_pickle=False) as file:
         lanes = race_recording(dict(file))
-    for lane, told in zip(lanes, shown["lanes"], strict=True):
-        assert [step.distance_m for step in lane.steps] == [s["distance_m"] for s in told["steps"]]
-        last = told["steps"][-1]
+    for lane, shown_lane in zip(lanes, shown["lanes"], strict=True):
+        assert [step.distance_m for step in lane.steps] == [
+            s["distance_m"] for s in shown_lane["steps"]
+        ]
+        last = shown_lane["steps"][-1]
         assert np.allclose(lane.steps[-1].motion.qpos, last["qpos"], atol=1e-5)
         assert len(last["time_s"]) == len(last["qpos"])
 

@@ -1,4 +1,4 @@
-"""What is told of a robot over REST before it walks."""
+"""Preview of a robot over REST before it walks."""
 
 from typing import Any
 
@@ -7,30 +7,30 @@ import pytest
 from tests.api.calls import Api, refused
 
 
-def told(api: Api, body: dict[str, Any]) -> Any:
+def preview_of(api: Api, body: dict[str, Any]) -> Any:
     answer = api.call("POST", "/robots/preview", json=body)
     assert answer.status_code == 200, answer.text
     return answer.json()
 
 
 def test_support_states_and_law_are_told_before_anything_runs(api: Api) -> None:
-    known = told(api, {"gait": "tripod"})
+    preview = preview_of(api, {"gait": "tripod"})
 
-    assert (known["states"], known["actions"]) == (25, 8)
-    assert known["tips"] is False
-    assert known["better"] is None
-    assert known["groups"][0]["legs"] == [1, 3, 5]
-    assert known["legs"][0]["home_m"] == pytest.approx([0.125, 0.2165], abs=1e-4)
+    assert (preview["states"], preview["actions"]) == (25, 8)
+    assert preview["tips"] is False
+    assert preview["better"] is None
+    assert preview["groups"][0]["legs"] == [1, 3, 5]
+    assert preview["legs"][0]["home_m"] == pytest.approx([0.125, 0.2165], abs=1e-4)
 
 
 def test_a_body_of_ones_own_that_tips_is_offered_other_groups(api: Api) -> None:
     places = [(0.1, 0.2), (-0.1, 0.2), (-0.1, -0.2), (0.1, -0.2)]
     legs = [{"x_m": x, "y_m": y, "foot_out_m": 0.12} for x, y in places]
-    known = told(api, {"gait": "pace", "robot": {"legs": legs}})
+    preview = preview_of(api, {"gait": "pace", "robot": {"legs": legs}})
 
-    assert known["tips"] is True
-    assert known["better"]["gait"]["groups"] == [[1, 3], [2, 4]]
-    assert known["better"]["margin_m"] >= -1e-6
+    assert preview["tips"] is True
+    assert preview["better"]["gait"]["groups"] == [[1, 3], [2, 4]]
+    assert preview["better"]["margin_m"] >= -1e-6
 
 
 def test_a_learner_is_recommended_for_body_and_gait(api: Api) -> None:
@@ -42,22 +42,22 @@ def test_a_learner_is_recommended_for_body_and_gait(api: Api) -> None:
         assert [*robot["recommended_agent"]] == robot["gaits"]
         assert {*robot["recommended_agent"].values()} <= learners
     for robot, gait in (("dog", "trot"), ("dog", "bound"), ("stiff", "pace")):
-        known = told(api, {"gait": gait, "robot": robot})
-        assert known["recommended_agent"] == by_robot[robot][gait]
-        assert ("It tips" in known["recommended_because"]) == known["tips"]
+        preview = preview_of(api, {"gait": gait, "robot": robot})
+        assert preview["recommended_agent"] == by_robot[robot][gait]
+        assert ("It tips" in preview["recommended_because"]) == preview["tips"]
     assert by_robot["dog"]["trot"] != by_robot["dog"]["bound"]
 
 
 def test_the_body_is_written_out_with_its_grid(api: Api) -> None:
-    known = told(api, {"gait": "trot", "robot": "dog"})
+    preview = preview_of(api, {"gait": "trot", "robot": "dog"})
 
-    front = known["legs"][0]["built"]
+    front = preview["legs"][0]["built"]
     assert (front["x_m"], front["y_m"]) == pytest.approx((0.06, 0.11))
     assert (front["yaw_deg"], front["foot_out_m"], front["femur_m"]) == (20, 0.12, 0.08)
-    assert known["built"]["torso_length_m"] == 0.26
-    assert known["forward_deg"] == pytest.approx(90)
-    assert [0.02, 0.02] in known["cells_m"]
-    assert told(api, {"gait": "tripod"})["built"]["torso_length_m"] is None
+    assert preview["built"]["torso_length_m"] == 0.26
+    assert preview["forward_deg"] == pytest.approx(90)
+    assert [0.02, 0.02] in preview["cells_m"]
+    assert preview_of(api, {"gait": "tripod"})["built"]["torso_length_m"] is None
 
 
 def test_legs_that_cannot_be_so_are_named(api: Api) -> None:

@@ -42,7 +42,7 @@ def test_several_curves_are_answered_at_once_with_few_points(
 ) -> None:
     often = api.finished(api.train(steps=100, evaluate_every=2))
     never = api.finished(api.train(steps=5, evaluate_every=0))
-    query = "&".join(f"id={one}" for one in (trained["id"], often["id"], never["id"], "none"))
+    query = "&".join(f"id={run_id}" for run_id in (trained["id"], often["id"], never["id"], "none"))
     curves = {curve["id"]: curve for curve in api.get(f"/runs/curves?{query}")["curves"]}
     whole = [api.get(f"/trainings/{run['id']}/curve")["evaluations"] for run in (trained, often)]
     assert curves.keys() == {trained["id"], often["id"]}
@@ -77,12 +77,16 @@ def test_a_run_tells_whether_somebody_named_it(api: Api) -> None:
 
 def test_runs_are_renamed_tagged_and_found_by_tag_in_any_order(api: Api) -> None:
     options = {"steps": 10, "evaluate_every": 0}
-    one, two = (api.finished(api.train(name=name, **options)) for name in ("Owl 2", "owl 1"))
-    changed = api.call("PATCH", f"/runs/{one['id']}", json={"name": " Owl 3 ", "tags": ["a", "A"]})
+    first, second = (api.finished(api.train(name=name, **options)) for name in ("Owl 2", "owl 1"))
+    changed = api.call(
+        "PATCH", f"/runs/{first['id']}", json={"name": " Owl 3 ", "tags": ["a", "A"]}
+    )
     assert changed.status_code == 200
-    assert changed.json() == api.look(one) == {**one, "name": "Owl 3", "tags": ["a"]}
-    api.call("PATCH", f"/runs/{two['id']}", json={"tags": ["a", "b"], "notes": "one\r\nplumage\t"})
-    assert api.look(two) == {**two, "tags": ["a", "b"], "notes": "one\nplumage"}
+    assert changed.json() == api.look(first) == {**first, "name": "Owl 3", "tags": ["a"]}
+    api.call(
+        "PATCH", f"/runs/{second['id']}", json={"tags": ["a", "b"], "notes": "one\r\nplumage\t"}
+    )
+    assert api.look(second) == {**second, "tags": ["a", "b"], "notes": "one\nplumage"}
     assert names(api.get("/runs?tag=A&sort=name")) == ["owl 1", "Owl 3"]
     assert names(api.get("/trainings?tag=b")) == ["owl 1"]
     assert names(api.get("/runs?search=PLUMAGE")) == ["owl 1"]
@@ -117,7 +121,7 @@ def test_several_runs_are_deleted(api: Api) -> None:
     query = "&".join(f"id={run['id']}" for run in runs)
     done = api.call("DELETE", f"/runs?{query}&id={live['id']}&id=none").json()
     assert done["deleted"] == [run["id"] for run in runs]
-    reasons = {one["id"]: one["reason"] for one in done["kept"]}
+    reasons = {entry["id"]: entry["reason"] for entry in done["kept"]}
     assert reasons.keys() == {live["id"], "none"}
     assert "stop it first" in reasons[live["id"]]
     api.stop(live)

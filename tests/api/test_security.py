@@ -44,15 +44,15 @@ def every_route(client: TestClient) -> list[tuple[str, str]]:
     """Return (method, path) of all routes; the method is `WS` for websockets."""
     app = client.app
     assert isinstance(app, FastAPI)
-    found = []
+    routes = []
     for route in iter_route_contexts(app.routes):
         path = (route.path or "").replace("{run_id}", "none")
         if path == "/static":
-            found.append(("GET", "/static/favicon.svg"))
+            routes.append(("GET", "/static/favicon.svg"))
         else:
-            found += [(method, path) for method in sorted(route.methods or {"WS"})]
-    assert len(found) > 30
-    return found
+            routes += [(method, path) for method in sorted(route.methods or {"WS"})]
+    assert len(routes) > 30
+    return routes
 
 
 def answer(client: TestClient, method: str, path: str, headers: dict[str, str]) -> int:
@@ -118,7 +118,9 @@ def test_policies_open_to_spectators_what_they_are_meant_to(shared: Serve) -> No
         if policy.access.spectators != "never" and operation[0] not in ("get", "head")
     }
     assert opened == {("post", WHAT_IF), ("post", f"{ROBOTS}/preview"), *OPEN_BY_CODE}
-    public = {path for (_, path), one in everything.items() if one.access.spectators == "always"}
+    public = {
+        path for (_, path), policy in everything.items() if policy.access.spectators == "always"
+    }
     assert public == {"/", "/healthz", "/readyz", "/static", *BY_CODE}
     assert policy_without_route({"type": "http", "method": "PUT"}).access.spectators == "never"
 
@@ -291,8 +293,8 @@ def test_cross_site_form_requests_are_refused(
         by_browser = {mark: value, **headers}
         refused(client.request(method, path, headers=by_browser), 403, "X-Requested-With")
         for header in ({"X-Requested-With": "x"}, {"Content-Type": "application/json"}):
-            own = {**by_browser, **header}
-            assert client.request(method, path, headers=own).status_code != 403, (method, path)
+            by_page = {**by_browser, **header}
+            assert client.request(method, path, headers=by_page).status_code != 403, (method, path)
 
 
 @pytest.mark.parametrize("headers", FORM_HEADERS, ids=str)

@@ -26,15 +26,15 @@ Serve = Callable[..., Api]
 def test_address_is_one_that_others_can_open(
     serve: Serve, settings: dict[str, object], host: str, address: str
 ) -> None:
-    found = serve(token=TOKEN, **settings).get("/spectators", headers={"Host": host})
+    invitation = serve(token=TOKEN, **settings).get("/spectators", headers={"Host": host})
     expected = address.format(local=local_address())
-    assert found["address"] == expected
-    assert TOKEN not in str(found)
-    assert found["reason"] == ""
-    assert found["watching"] == 0
+    assert invitation["address"] == expected
+    assert TOKEN not in str(invitation)
+    assert invitation["reason"] == ""
+    assert invitation["watching"] == 0
     # Dark on white in both themes, with the margin that scanners need.
     code = segno.make(expected, micro=False)
-    assert found["qr_code"] == code.svg_data_uri(border=2, light="#fff")
+    assert invitation["qr_code"] == code.svg_data_uri(border=2, light="#fff")
 
 
 @pytest.mark.parametrize(
@@ -49,6 +49,6 @@ def test_without_an_address_for_others_the_reason_is_told(
     serve: Serve, settings: dict[str, object], words: str
 ) -> None:
     bearer = {"Authorization": f"Bearer {TOKEN}"}
-    found = serve(**settings).get("/spectators", headers=bearer)
-    assert (found["address"], found["qr_code"]) == (None, None)
-    assert words in found["reason"]
+    invitation = serve(**settings).get("/spectators", headers=bearer)
+    assert (invitation["address"], invitation["qr_code"]) == (None, None)
+    assert words in invitation["reason"]

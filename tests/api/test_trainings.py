@@ -208,11 +208,11 @@ def test_training_with_live_changes_is_reproducible(api: Api) -> None:
 
 
 def test_list_is_paginated_newest_first(api: Api, trained: dict[str, Any]) -> None:
-    made = [api.finished(api.train(steps=1, name=f"page {n}"))["id"] for n in range(3)]
+    ids = [api.finished(api.train(steps=1, name=f"page {n}"))["id"] for n in range(3)]
     first = api.get("/trainings?limit=2&state=finished")
-    assert [run["id"] for run in first["items"]] == made[:0:-1]
+    assert [run["id"] for run in first["items"]] == ids[:0:-1]
     second = api.get(f"/trainings?limit=1&state=finished&cursor={first['next_cursor']}")
-    assert [run["id"] for run in second["items"]] == made[:1]
+    assert [run["id"] for run in second["items"]] == ids[:1]
     assert all(run["kind"] == "training" for run in api.get("/trainings")["items"])
     refused(api.call("GET", "/trainings?state=lost"), 422, "queued", "interrupted")
     refused(api.call("GET", "/trainings?limit=0"), 422, "1 to 100")

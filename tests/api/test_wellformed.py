@@ -15,8 +15,8 @@ TOKEN = "a-token-for-tests"
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
-    with serving(tmp_path_factory.mktemp("data"), token=TOKEN) as one:
-        yield one
+    with serving(tmp_path_factory.mktemp("data"), token=TOKEN) as running:
+        yield running
 
 
 def ask(server: Serving, *lines: str, body: bytes = b"") -> bytes:
@@ -113,10 +113,10 @@ def test_head_has_the_headers_of_get_without_the_body(server: Serving) -> None:
 def stable_headers(head: bytes) -> dict[bytes, Any]:
     """Return status and headers, without those that differ between requests."""
     status, *lines = head.split(b"\r\n")
-    found = dict(line.lower().split(b": ", 1) for line in lines)
+    headers = dict(line.lower().split(b": ", 1) for line in lines)
     for name in (b"date", b"content-length", b"transfer-encoding"):
-        found.pop(name, None)
-    return {b"status": status, **found}
+        headers.pop(name, None)
+    return {b"status": status, **headers}
 
 
 def test_head_of_a_stream_leaves_the_connection_usable(server: Serving) -> None:
@@ -126,14 +126,14 @@ def test_head_of_a_stream_leaves_the_connection_usable(server: Serving) -> None:
 
 
 def test_recorded_stream_is_rate_limited_however_its_query_is_encoded(tmp_path: Path) -> None:
-    with serving(tmp_path, token=TOKEN, starts_per_minute=1) as one:
+    with serving(tmp_path, token=TOKEN, starts_per_minute=1) as server:
         stream = "GET /api/v1/races/x/recording?{} HTTP/1.1"
-        assert status_of(ask(one, stream.format("format=viser"))) == 404
+        assert status_of(ask(server, stream.format("format=viser"))) == 404
         for query in (
             "format=viser",
             "format=%76iser",
             "%66ormat=v%69ser",
             "format=json&format=viser",
         ):
-            assert status_of(ask(one, stream.format(query))) == 429, query
-        assert status_of(ask(one, stream.format("format=json&x=viser"))) == 404
+            assert status_of(ask(server, stream.format(query))) == 429, query
+        assert status_of(ask(server, stream.format("format=json&x=viser"))) == 404

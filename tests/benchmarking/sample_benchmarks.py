@@ -13,9 +13,9 @@ AGENT, TASK, BUDGETS, SEEDS = "q-learning", "tripod", (3, 6), 3
 SMALL: Mapping[str, Any] = {"tasks": (TASK,), "budgets": BUDGETS, "seeds": SEEDS}
 
 
-def small(agent: str = AGENT, settings: Mapping[str, Any] | None = None, **given: Any) -> Any:
+def small(agent: str = AGENT, settings: Mapping[str, Any] | None = None, **options: Any) -> Any:
     """Return the config of a small benchmark."""
-    return benchmark_config(agent, settings or {}, **{**SMALL, **given})
+    return benchmark_config(agent, settings or {}, **{**SMALL, **options})
 
 
 @cache

@@ -17,37 +17,37 @@ RESULT = BenchmarkResult(0.1234567890123456)
 
 
 def test_what_was_kept_is_there_again_also_with_more_seeds(tmp_path: Path) -> None:
-    with kept_runs(tmp_path / "s.json", small()) as kept:
-        kept.add(RUN, RESULT)
-        kept.add(BenchmarkRun("tripod", 6, 0), BenchmarkResult(0.0, "it broke"))
-    with kept_runs(tmp_path / "s.json", small(seeds=9)) as kept:
-        assert kept.results == {
+    with kept_runs(tmp_path / "s.json", small()) as progress:
+        progress.add(RUN, RESULT)
+        progress.add(BenchmarkRun("tripod", 6, 0), BenchmarkResult(0.0, "it broke"))
+    with kept_runs(tmp_path / "s.json", small(seeds=9)) as progress:
+        assert progress.results == {
             RUN: RESULT,
             BenchmarkRun("tripod", 6, 0): BenchmarkResult(0.0, "it broke"),
         }
-        kept.delete()
+        progress.delete()
     assert not list(tmp_path.iterdir())
 
 
 def test_a_line_that_was_not_written_whole_is_run_again(tmp_path: Path) -> None:
-    with kept_runs(tmp_path / "s.json", small()) as kept:
-        kept.add(RUN, RESULT)
+    with kept_runs(tmp_path / "s.json", small()) as progress:
+        progress.add(RUN, RESULT)
     file = tmp_path / "s.json.runs"
     file.write_bytes(file.read_bytes() + b'["tripod", 6')
-    with kept_runs(tmp_path / "s.json", small()) as kept:
-        assert kept.results == {RUN: RESULT}
-        kept.add(BenchmarkRun("tripod", 6, 1), RESULT)
-    with kept_runs(tmp_path / "s.json", small()) as kept:
-        assert len(kept.results) == 2
+    with kept_runs(tmp_path / "s.json", small()) as progress:
+        assert progress.results == {RUN: RESULT}
+        progress.add(BenchmarkRun("tripod", 6, 1), RESULT)
+    with kept_runs(tmp_path / "s.json", small()) as progress:
+        assert len(progress.results) == 2
 
 
 def test_runs_of_a_score_file_count(tmp_path: Path) -> None:
     done = small_benchmark()
     (tmp_path / "s.json").write_bytes(encode(done.content))
-    with kept_runs(tmp_path / "s.json", small(seeds=9)) as kept:
-        assert len(kept.results) == 6
+    with kept_runs(tmp_path / "s.json", small(seeds=9)) as progress:
+        assert len(progress.results) == 6
         first = done.content["tasks"][0]["budgets"][0]["distances_m"][0]
-        assert kept.results[RUN] == BenchmarkResult(first)
+        assert progress.results[RUN] == BenchmarkResult(first)
 
 
 def test_runs_of_another_benchmark_are_refused(tmp_path: Path) -> None:

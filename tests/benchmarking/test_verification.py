@@ -43,8 +43,8 @@ def test_a_changed_score_is_told_although_no_run_is_repeated_for_it() -> None:
 def test_another_best_known_distance_is_told() -> None:
     content = changed()
     content["tasks"][0]["best_known_m"] = 0.3
-    [told] = verification(content, workers=1, sample=1).differences
-    assert told.startswith("tasks tripod best_known_m: 0.3 in the file, ")
+    [difference] = verification(content, workers=1, sample=1).differences
+    assert difference.startswith("tasks tripod best_known_m: 0.3 in the file, ")
 
 
 def test_last_digits_are_told_apart_from_other_differences() -> None:

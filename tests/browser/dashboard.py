@@ -250,7 +250,7 @@ class Dashboard:
     def has_figures(self, lanes: int = 3) -> bool:
         """Whether every lane has a distance."""
         shown = self.distances()
-        return len(shown) == lanes and all(_METRES.fullmatch(one) for one in shown)
+        return len(shown) == lanes and all(_METRES.fullmatch(distance) for distance in shown)
 
     def box(self, selector: str) -> FloatRect:
         """Where the first element of a selector lies in the window [px]."""
@@ -274,22 +274,24 @@ class Dashboard:
         # All rules are tried; only those that are kept get no list of where they are.
         rules = {"runOnly": list(only)} if only else {}
         options = {"iframes": False, "resultTypes": ["violations"], **rules}
-        found = self.page.evaluate("options => axe.run(document, options)", options)
-        return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
+        report = self.page.evaluate("options => axe.run(document, options)", options)
+        return [f"{v['id']}: {n['html']}" for v in report["violations"] for n in v["nodes"]]
 
     def violations_in_both_themes(self) -> list[str]:
         """Return axe's violations, first of all rules and then of colours in the other theme."""
         self.page.emulate_media(color_scheme="light")
-        found = self.violations()
+        violations = self.violations()
         self.page.emulate_media(color_scheme="dark")
-        return found + [f"dark: {violation}" for violation in self.violations(*_RULES_OF_COLORS)]
+        return violations + [
+            f"dark: {violation}" for violation in self.violations(*_RULES_OF_COLORS)
+        ]
 
     def small_targets(self, least_px: int) -> list[str]:
         """Return the controls that are smaller than they may be, in all that can be unfolded."""
         self.page.evaluate(_UNFOLD)
-        found: list[str] = self.page.evaluate(_TOO_SMALL, least_px)
+        controls: list[str] = self.page.evaluate(_TOO_SMALL, least_px)
         self.page.evaluate(_FOLD)
-        return found
+        return controls
 
     def get(self, path: str) -> Any:
         """Return the API's answer to this page."""

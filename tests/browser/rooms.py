@@ -50,9 +50,9 @@ class RoomPage(Dashboard):
         """Name and seed of the participant."""
         head = self.page.get_by_role("banner").get_by_role("paragraph").first
         expect(head).to_have_text(_KEPT)
-        found = _KEPT.match(head.inner_text().strip().replace("\n", " "))
-        assert found is not None
-        return found[1], int(found[2])
+        match = _KEPT.match(head.inner_text().strip().replace("\n", " "))
+        assert match is not None
+        return match[1], int(match[2])
 
     @property
     def distance(self) -> Locator:

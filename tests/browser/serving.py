@@ -55,11 +55,11 @@ class Serving:
             stderr=subprocess.STDOUT,
         )
         self._said: list[str] = []
-        self._found = threading.Event()
+        self._has_address = threading.Event()
         self.address = ""
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        if not self._found.wait(_STARTS_WITHIN_S) or not self.address:
+        if not self._has_address.wait(_STARTS_WITHIN_S) or not self.address:
             self.stop()
             raise RuntimeError(f"the server did not start; it said: {''.join(self._said)}")
 
@@ -107,11 +107,11 @@ class Serving:
         assert self._process.stdout is not None
         for line in self._process.stdout:
             self._said.append(line)
-            if found := _ADDRESS.search(line):
+            if match := _ADDRESS.search(line):
                 # It says its public address, if it has one.
-                self.address = read_address_file(self.data) or found[1]
-                self._found.set()
-        self._found.set()
+                self.address = read_address_file(self.data) or match[1]
+                self._has_address.set()
+        self._has_address.set()
 
 
 @contextmanager

@@ -82,9 +82,11 @@ def numbers_of_axis(chart: Locator) -> list[str]:
 
 def sought(page: Page, act: Callable[[], object]) -> float:
     """Return the moment that an action asks the stage for [s]."""
-    with page.expect_request(lambda one: one.method == "PUT" and "/stage" in one.url) as asked:
+    with page.expect_request(
+        lambda request: request.method == "PUT" and "/stage" in request.url
+    ) as sent:
         act()
-    body = asked.value.post_data_json or {}
+    body = sent.value.post_data_json or {}
     assert list(body) == ["time_s"]
     return float(body["time_s"])
 
@@ -132,12 +134,12 @@ def zooms(dashboard: Dashboard, race: Locator) -> None:
     page.mouse.up()
     expect(race.locator(".selection")).to_have_count(0)
     dashboard.eventually(lambda: numbers_of_axis(race) != before, "the axis shows a part")
-    asked: list[str] = []
-    page.on("request", lambda one: asked.append(one.method))
+    methods: list[str] = []
+    page.on("request", lambda request: methods.append(request.method))
     race.dblclick(position={"x": box["width"] / 2, "y": 40})
     dashboard.eventually(lambda: numbers_of_axis(race) == before, "the axis shows all")
     page.wait_for_timeout(500)  # longer than the first click of two waits for the second
-    assert "PUT" not in asked
+    assert "PUT" not in methods
 
 
 def answers_keys(dashboard: Dashboard, race: Locator) -> None:

@@ -19,8 +19,8 @@ WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
 class Duel(NamedTuple):
     """Ids of two trainings that can race each other, and of one with another gait."""
 
-    one: str
-    other: str
+    calm: str
+    bold: str
     turned: str
 
 
@@ -68,7 +68,7 @@ def test_runs_are_compared_side_by_side_and_raced(
     dashboard: Dashboard, shared_server: Serving, duel: Duel
 ) -> None:
     page = dashboard.page
-    one, other, turned = duel
+    calm, bold, turned = duel
 
     # From the list: those that cannot race say why, and two that can are compared.
     page.goto(f"{shared_server.address}#runs?search=duel&sort=oldest")
@@ -81,7 +81,7 @@ def test_runs_are_compared_side_by_side_and_raced(
     page.get_by_role("link", name="Compare 2").click()
 
     # Curves over each other, read at the crosshair by keys.
-    expect(page).to_have_url(f"{shared_server.address}#compare?runs={one},{other}")
+    expect(page).to_have_url(f"{shared_server.address}#compare?runs={calm},{bold}")
     expect(page.get_by_role("img", name=re.compile("^Learning curves: A: .* B: "))).to_be_visible()
     reading = page.get_by_role("slider", name=re.compile("learning curves"))
     reading.focus()
@@ -92,7 +92,7 @@ def test_runs_are_compared_side_by_side_and_raced(
     marks_what_differs(page)
 
     # Policies where they differ, as the tables have them.
-    differ = different_states(dashboard, one, other)
+    differ = different_states(dashboard, calm, bold)
     policies = page.get_by_role("region", name="Policies", exact=True)
     expect(policies).to_contain_text(re.compile(rf"best moves differ in {differ}\b"))
     if differ > 12:
@@ -106,7 +106,7 @@ def test_runs_are_compared_side_by_side_and_raced(
     page.set_viewport_size({"width": 1280, "height": 720})
 
     # A run that cannot be compared says why; the rest stays.
-    page.goto(f"{shared_server.address}#compare?runs={one},gone,{other},{turned}")
+    page.goto(f"{shared_server.address}#compare?runs={calm},gone,{bold},{turned}")
     expect(page.get_by_role("alert").filter(has_text="There is no such run")).to_be_visible()
     dashboard.button("Leave out gone").click()
     dashboard.button("Leave out Duel turned").click()
@@ -115,9 +115,9 @@ def test_runs_are_compared_side_by_side_and_raced(
     expect(page.get_by_role("region", name="Stage", exact=True)).to_be_visible()
     race = dashboard.get("/api/v1/races?sort=newest&limit=1")["items"][0]
     assert race["name"] == "Race of Duel calm and Duel bold"
-    assert [lane["training_id"] for lane in race["config"]["lanes"]] == [one, other]
+    assert [lane["training_id"] for lane in race["config"]["lanes"]] == [calm, bold]
 
-    page.goto(f"{shared_server.address}#compare?runs={one}")
+    page.goto(f"{shared_server.address}#compare?runs={calm}")
     expect(page.get_by_text("It takes two runs to compare.")).to_be_visible()
     assert dashboard.violations() == []
 
@@ -126,15 +126,15 @@ def test_the_robots_of_another_run_walk_along_as_ghosts(
     dashboard: Dashboard, shared_server: Serving, duel: Duel
 ) -> None:
     page = dashboard.page
-    one, other, _ = duel
-    dashboard.open(f"{shared_server.address}#compare?runs={one},{other}")
+    calm, bold, _ = duel
+    dashboard.open(f"{shared_server.address}#compare?runs={calm},{bold}")
     page.get_by_role("link", name="Replay A with B as ghost").click()
-    expect(page).to_have_url(re.compile(rf"\?run={one}&ghost={other}$"))
+    expect(page).to_have_url(re.compile(rf"\?run={calm}&ghost={bold}$"))
     expect(dashboard.labels).to_contain_text(re.compile(r"Ghosts: Duel bold \(Sarsa −?0\.\d\d"))
     dashboard.button("Pause replay").click()
-    expect(page).to_have_url(re.compile(rf"run={one}&ghost={other}&t="))
+    expect(page).to_have_url(re.compile(rf"run={calm}&ghost={bold}&t="))
     assert dashboard.violations() == []
-    page.goto(f"{shared_server.address}?run={one}&ghost={one}")
+    page.goto(f"{shared_server.address}?run={calm}&ghost={calm}")
     alert = page.get_by_role("alert").filter(has_text="cannot be its own ghost")
     expect(alert).to_be_visible()
     dashboard.button("Watch the stage").click()

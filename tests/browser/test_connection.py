@@ -54,7 +54,7 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
     page = dashboard.page
     first = Serving(tmp_path, token="for-the-operator")
     page.route("**/spectators.js", lambda route: route.abort())
-    with page.expect_event("requestfailed", lambda one: one.url.endswith("/spectators.js")):
+    with page.expect_event("requestfailed", lambda request: request.url.endswith("/spectators.js")):
         dashboard.open(first.address)
     page.unroute_all(behavior="wait")
     assert dashboard.complaints == []

@@ -48,13 +48,15 @@ def test_a_body_that_tips_is_offered_its_learner_and_a_choice_of_ones_own_stays(
     page = dashboard.page
     dashboard.open(f"{server.address}?depth=study&tab=train")
     learner = page.get_by_label("Learner", exact=True)
-    told = page.get_by_role("status").filter(has_text="for this body")
-    expect(told).to_contain_text("Linear model is recommended for this body. It stands")
+    recommendation = page.get_by_role("status").filter(has_text="for this body")
+    expect(recommendation).to_contain_text("Linear model is recommended for this body. It stands")
     expect(learner).to_have_value("q-learning")
 
     page.get_by_role("radio", name="Bound").check(force=True)
     expect(learner).to_have_value("multilevel-model")
-    expect(told).to_contain_text("Multilevel model is offered for this body. It tips while")
+    expect(recommendation).to_contain_text(
+        "Multilevel model is offered for this body. It tips while"
+    )
     for theme in ("dark", "light"):
         page.emulate_media(color_scheme=theme)
         assert dashboard.violations() == []
@@ -63,12 +65,14 @@ def test_a_body_that_tips_is_offered_its_learner_and_a_choice_of_ones_own_stays(
 
     learner.select_option("sarsa")
     page.get_by_role("radio", name="Bound").check(force=True)
-    expect(told).to_contain_text("Multilevel model is recommended for this body. It tips while")
+    expect(recommendation).to_contain_text(
+        "Multilevel model is recommended for this body. It tips while"
+    )
     expect(learner).to_have_value("sarsa")
-    told.get_by_role("button", name="Take it").click()
+    recommendation.get_by_role("button", name="Take it").click()
     expect(learner).to_have_value("multilevel-model")
     page.get_by_role("radio", name="Tripod").check(force=True)
-    expect(told).to_contain_text("Linear model is recommended")
+    expect(recommendation).to_contain_text("Linear model is recommended")
     expect(learner).to_have_value("multilevel-model")
 
 
@@ -77,16 +81,16 @@ def test_what_tips_is_offered_other_groups_and_legs_are_moved_between_them(
 ) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?robot=dog&gait=bound&depth=study&tab=train")
-    known = beforehand(dashboard)
-    expect(known.get_by_text("It tips while legs 1+2 and 3+4 swing")).to_be_visible()
+    preview = beforehand(dashboard)
+    expect(preview.get_by_text("It tips while legs 1+2 and 3+4 swing")).to_be_visible()
     assert dashboard.violations() == []
 
     dashboard.button("Take groups with which it stands").click()
     expect(page.get_by_text("Groups 1+3, 2+4")).to_be_visible()
-    expect(known).to_contain_text("stands by")
+    expect(preview).to_contain_text("stands by")
     page.get_by_role("button", name="Leg 4, in group 2").press("Enter")
     expect(page.get_by_text("Groups 1+3, 2, 4")).to_be_visible()
-    expect(known).to_contain_text("125 states, 12 moves")
+    expect(preview).to_contain_text("125 states, 12 moves")
     page.reload()
     expect(page.get_by_text("Groups 1+3, 2, 4")).to_be_visible()
 

@@ -84,16 +84,16 @@ def own_runs_alone_are_changed(dashboard: Dashboard, other_id: str) -> None:
     page = dashboard.page
     page.goto(f"{page.url.partition('?')[0]}#runs")
     expect(dashboard.runs.first).to_be_visible()
-    other = dashboard.runs.filter(has_text="Of another")
-    other.get_by_label(re.compile("More|actions", re.IGNORECASE)).first.click()
-    expect(other.get_by_role("button", name="Run again")).to_be_visible()
+    run_of_another = dashboard.runs.filter(has_text="Of another")
+    run_of_another.get_by_label(re.compile("More|actions", re.IGNORECASE)).first.click()
+    expect(run_of_another.get_by_role("button", name="Run again")).to_be_visible()
     for name in ("Rename", "Delete"):
-        expect(other.get_by_role("button", name=name, exact=True)).to_have_count(0)
+        expect(run_of_another.get_by_role("button", name=name, exact=True)).to_have_count(0)
     page.keyboard.press("Escape")
-    own = dashboard.runs.filter(has_text="Race").first
-    own.get_by_label(re.compile("More|actions", re.IGNORECASE)).first.click()
+    own_run = dashboard.runs.filter(has_text="Race").first
+    own_run.get_by_label(re.compile("More|actions", re.IGNORECASE)).first.click()
     before = dashboard.runs.count()
-    own.get_by_role("button", name="Delete", exact=True).click()
+    own_run.get_by_role("button", name="Delete", exact=True).click()
     page.get_by_role("button", name="Delete for good?").click()
     expect(dashboard.runs).to_have_count(before - 1)
     assert other_id in str(dashboard.get("api/v1/runs"))

@@ -44,8 +44,8 @@ def test_a_leg_is_broken_while_a_robot_practises(
     dashboard.open_tab("Board")
     dashboard.button("Train, don’t race").click()
     dashboard.open_tab("World")
-    beside = page.get_by_role("region", name="Pinned: Train")
-    curve = beside.get_by_role("img", name=re.compile("^Learning curve"))
+    pinned = page.get_by_role("region", name="Pinned: Train")
+    curve = pinned.get_by_role("img", name=re.compile("^Learning curve"))
     walks = re.compile(r"^Learning curve: 0\.[45]\d\sm after.*; best known 0\.5\d\sm\.$")
     expect(curve).to_have_accessible_name(walks)
     leg = page.get_by_role("button", name=re.compile("^Leg 3(?!, in group)"))
@@ -56,10 +56,10 @@ def test_a_leg_is_broken_while_a_robot_practises(
     expect(leg).to_have_attribute("aria-pressed", "true")
     now = disturbances_now(dashboard)
     expect(now).to_contain_text(re.compile(r"Now: legs\s3, 6 limp"))
-    happened = beside.get_by_text(re.compile("^Happened: "))
+    happened = pinned.get_by_text(re.compile("^Happened: "))
     expect(happened).to_contain_text(re.compile(r"^Happened: legs?\s3.* limp from step \d+"))
-    told = page.get_by_role("listitem").filter(has=dashboard.button("Go there"))
-    expect(told.first).to_contain_text(re.compile(r"^step \d+ Legs?\s3.* limp"))
+    happenings = page.get_by_role("listitem").filter(has=dashboard.button("Go there"))
+    expect(happenings.first).to_contain_text(re.compile(r"^step \d+ Legs?\s3.* limp"))
     expect(curve).to_have_accessible_name(re.compile(r": −?0\.[012]\d\sm after"))
 
     tells_others(flat_browser, shared_server)
@@ -151,24 +151,24 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     dashboard.moment.fill("1")
     dashboard.button("Pause replay for everyone").click()
     expect(branch).to_contain_text(re.compile(r"From step [12]?\d: as it was"))
-    held = step_of(branch)
+    step_number = step_of(branch)
     start = dashboard.button("Race on from here")
     expect(start).to_be_disabled()
     dashboard.unfold("Ground, load and servos")
     page.get_by_role("spinbutton", name="Patch: To").fill("0.3")
     dashboard.button("Lay it").click()
-    patch = re.compile(rf"From step {held}: patch .* to 0\.3\sm, friction 0\.05")
+    patch = re.compile(rf"From step {step_number}: patch .* to 0\.3\sm, friction 0\.05")
     expect(branch).to_contain_text(patch)
     dashboard.button("Undo all").click()
     expect(start).to_be_disabled()
     for leg in (1, 4):
         dashboard.button(f"Leg {leg}").click()
-    expect(branch).to_contain_text(re.compile(rf"From step {held}: legs\s1, 4 limp"))
+    expect(branch).to_contain_text(re.compile(rf"From step {step_number}: legs\s1, 4 limp"))
     assert dashboard.violations() == []
     goes_on_from_the_moment(dashboard, start)
 
     dashboard.open_tab("Board")
-    expect(board).to_contain_text(re.compile(rf"The same as Race: .* before step {held}\."))
+    expect(board).to_contain_text(re.compile(rf"The same as Race: .* before step {step_number}\."))
     show_its_end(dashboard)
     expect(board.get_by_text("Best known")).to_have_count(0)
     expect(chart).to_have_accessible_name(re.compile(r"Informed.*\d\sm\.$"))
@@ -192,22 +192,23 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
 
 def goes_on_from_the_moment(dashboard: Dashboard, start: Locator) -> None:
     """Press "Race on from here": the stage shows the new race where the old one was held."""
-    held = dashboard.get("/api/v1/stage")
+    stage_before = dashboard.get("/api/v1/stage")
     start.click()
     dashboard.eventually(
-        lambda: dashboard.get("/api/v1/stage")["run_id"] != held["run_id"], "the branch on stage"
+        lambda: dashboard.get("/api/v1/stage")["run_id"] != stage_before["run_id"],
+        "the branch on stage",
     )
-    assert dashboard.get("/api/v1/stage")["time_s"] > held["time_s"] - LONGEST_STEP_S
+    assert dashboard.get("/api/v1/stage")["time_s"] > stage_before["time_s"] - LONGEST_STEP_S
 
 
 def step_of(branch: Locator) -> str:
     """Return the step from which a branch would go on."""
-    found = re.search(r"From step (\d+)", branch.inner_text())
-    assert found is not None
-    return found[1]
+    match = re.search(r"From step (\d+)", branch.inner_text())
+    assert match is not None
+    return match[1]
 
 
-def branches_by_a_pick(dashboard: Dashboard, held: dict[str, Any]) -> None:
+def branches_by_a_pick(dashboard: Dashboard, race: dict[str, Any]) -> None:
     """What happens to a leg that is picked in the picture starts a branch of the race there."""
     picks_a_leg(dashboard)
     dashboard.button("Stuck").click()
@@ -217,10 +218,10 @@ def branches_by_a_pick(dashboard: Dashboard, held: dict[str, Any]) -> None:
         config: dict[str, Any] = dashboard.get("/api/v1/races")["items"][0]["config"]
         return config
 
-    dashboard.eventually(lambda: newest()["branch_from"]["race_id"] == held["id"], "a branch")
+    dashboard.eventually(lambda: newest()["branch_from"]["race_id"] == race["id"], "a branch")
     last = newest()["disturbances"][-1]
     assert (last["kind"], last["leg"]) == ("stuck", 3)
-    expect(dashboard.scoreboard).to_contain_text(f"The same as {held['name']} before")
+    expect(dashboard.scoreboard).to_contain_text(f"The same as {race['name']} before")
 
 
 def picks_a_leg(dashboard: Dashboard) -> None:
@@ -254,7 +255,9 @@ def picks_a_leg(dashboard: Dashboard) -> None:
 
 def race_to_its_end(dashboard: Dashboard) -> None:
     """Start a race, wait until it is simulated, and skip its show."""
-    with dashboard.page.expect_response(lambda one: one.request.method == "POST") as started:
+    with dashboard.page.expect_response(
+        lambda response: response.request.method == "POST"
+    ) as started:
         dashboard.primary.click()
     assert started.value.status == 202
     show_its_end(dashboard)

@@ -35,8 +35,8 @@ WORDS = {
 @pytest.fixture
 def server(without: set[str], tmp_path: Path) -> Iterator[Serving]:
     """A server that leaves out those of its features."""
-    own = {feature.name for feature in load().classes} & without
-    with serving(tmp_path, without=",".join(sorted(own))) as fresh:
+    left_out = {feature.name for feature in load().classes} & without
+    with serving(tmp_path, without=",".join(sorted(left_out))) as fresh:
         yield fresh
 
 
@@ -45,13 +45,13 @@ def leave_out(dashboard: Dashboard, server: Serving, without: set[str]) -> None:
 
     def reduce(route: Route) -> None:
         response = route.fetch()
-        kept = [
+        remaining = [
             f for f in page_features(PageFiles(assets.static_dir())) if f["name"] not in without
         ]
         folders = "|".join(without)
         body = re.sub(
             r'(id="features">).*?(</script>)',
-            lambda found: found[1] + json.dumps(kept) + found[2],
+            lambda match: match[1] + json.dumps(remaining) + match[2],
             re.sub(rf"<link [^>]*features/(?:{folders})/[^>]*>\n", "", response.text()),
         )
         route.fulfill(response=response, body=body)

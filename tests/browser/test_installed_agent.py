@@ -103,11 +103,11 @@ def test_openapi_describes_its_settings(client: httpx2.Client) -> None:
 
 def test_options_list_its_settings(client: httpx2.Client) -> None:
     agents = client.get("/api/v1/options").json()["agents"]
-    (found,) = [agent for agent in agents if agent["name"] == "wanderer"]
-    assert (found["title"], found["learns"]) == ("Wanderer", True)
-    assert list(found["settings"])[-2:] == ["optimism", "patience"]
-    assert "patience" in found["live_settings"]
-    assert "optimism" not in found["live_settings"]
+    (agent,) = [agent for agent in agents if agent["name"] == "wanderer"]
+    assert (agent["title"], agent["learns"]) == ("Wanderer", True)
+    assert list(agent["settings"])[-2:] == ["optimism", "patience"]
+    assert "patience" in agent["live_settings"]
+    assert "optimism" not in agent["live_settings"]
 
 
 @pytest.mark.usefixtures("installed")
@@ -218,9 +218,9 @@ def _until(client: httpx2.Client, run: dict[str, Any], state: str) -> dict[str, 
     """The run once it is in a state."""
     path = f"/api/v1/{run['kind']}s/{run['id']}"
     for _ in range(1200):
-        found: dict[str, Any] = client.get(path).json()
-        if found["state"] == state:
-            return found
+        run_now: dict[str, Any] = client.get(path).json()
+        if run_now["state"] == state:
+            return run_now
         time.sleep(0.1)
-        assert found["state"] in ("queued", "running", "interrupted"), found
-    raise AssertionError(f"it is {found['state']}")
+        assert run_now["state"] in ("queued", "running", "interrupted"), run_now
+    raise AssertionError(f"it is {run_now['state']}")

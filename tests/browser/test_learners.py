@@ -37,8 +37,8 @@ def trace_decay(dashboard: Dashboard) -> Locator:
 
 def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
     """Return the trainings of the server, the newest first."""
-    found: list[dict[str, Any]] = dashboard.get("/api/v1/trainings")["items"]
-    return found
+    items: list[dict[str, Any]] = dashboard.get("/api/v1/trainings")["items"]
+    return items
 
 
 def changed(dashboard: Dashboard) -> dict[str, Any]:
@@ -108,7 +108,7 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
     dashboard.primary.click()
     dashboard.open_tab("Board")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
-    configs = {one["config"]["agent"]: one["config"] for one in trainings(dashboard)}
+    configs = {training["config"]["agent"]: training["config"] for training in trainings(dashboard)}
     assert set(configs) == {"q-learning", "sarsa-lambda"}
     assert [config["settings"]["alpha"] for config in configs.values()] == [0.5, 0.5]
     assert configs["sarsa-lambda"]["settings"]["trace_decay"] == 0.9
@@ -118,8 +118,11 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
     dashboard.primary.click()
     dashboard.eventually(lambda: len(trainings(dashboard)) == 4, "the trainings that continue")
     first, second, *before = trainings(dashboard)
-    continued = {one["config"]["agent"]: one["config"]["continue_from"] for one in (first, second)}
-    assert continued == {one["config"]["agent"]: one["id"] for one in before}
+    continued = {
+        training["config"]["agent"]: training["config"]["continue_from"]
+        for training in (first, second)
+    }
+    assert continued == {training["config"]["agent"]: training["id"] for training in before}
 
 
 def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server: Serving) -> None:

@@ -159,8 +159,8 @@ def closes_what_happens_to_the_robots(dashboard: Dashboard, link: str) -> None:
         now.get_by_role("button", name="Leg 1", exact=True),
         now.get_by_label("Slope", exact=True),
     )
-    for one in closed:
-        expect(one).to_be_disabled()
+    for control in closed:
+        expect(control).to_be_disabled()
     dashboard.stand_in_for_stage({"type": "hexapods:pick", "pick": PICK})
     menu = page.get_by_role("region", name=re.compile(", leg 1$"))
     expect(menu).to_contain_text("The lesson's card")
@@ -168,8 +168,8 @@ def closes_what_happens_to_the_robots(dashboard: Dashboard, link: str) -> None:
     assert dashboard.violations_in_both_themes() == []
     menu.get_by_role("button", name="Open all settings").click()
     expect(menu.get_by_role("button", name="Let it happen")).to_be_visible()
-    for one in closed:
-        expect(one).to_be_enabled()
+    for control in closed:
+        expect(control).to_be_enabled()
     page.keyboard.press("Escape")
     dashboard.button("Stop").click()
 

@@ -128,8 +128,8 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     dashboard.unfold("Race")
     expect(train.get_by_role("checkbox", name="Two-step", exact=True)).not_to_be_checked()
     page.get_by_role("button", name="Share").click()
-    told = page.get_by_role("status").filter(has_text=re.compile("link", re.IGNORECASE))
-    expect(told).to_be_visible()
+    message = page.get_by_role("status").filter(has_text=re.compile("link", re.IGNORECASE))
+    expect(message).to_be_visible()
 
 
 def test_a_number_that_is_none_holds_the_button_back(

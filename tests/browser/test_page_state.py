@@ -80,20 +80,20 @@ def test_what_a_link_says_in_vain_is_told(dashboard: Dashboard, shared_server: S
     page = dashboard.page
     wrong = {"depth": "deep", "tab": "chart", "t": "soon", "alhpa": "0.5", "steps": "many"}
     dashboard.open(shared_server.link("nowhere", **wrong))
-    told = page.get_by_role("status").filter(has_text="The link also says")
-    for part in ("alhpa=0.5", "t=soon", "depth=deep", "tab=chart", "view=nowhere"):
-        expect(told).to_contain_text(part)
+    message = page.get_by_role("status").filter(has_text="The link also says")
+    for words in ("alhpa=0.5", "t=soon", "depth=deep", "tab=chart", "view=nowhere"):
+        expect(message).to_contain_text(words)
     # What is valid is told where that is a word of a few.
     views = "race, runs, compare, lessons, experiments"
     for valid in ("watch, try, study", "board, train, world, why", views):
-        expect(told).to_contain_text(valid)
+        expect(message).to_contain_text(valid)
     # A field of the form keeps its text, in the link too; the page beside it is as ever.
     expect(dashboard.scoreboard).to_be_visible()
     expect(dashboard.primary).to_have_attribute("aria-disabled", "true")
     expect(page).to_have_url(f"{shared_server.address}?steps=many")
     assert dashboard.violations() == []
-    told.get_by_role("button", name="Dismiss").click()
-    expect(told).to_have_count(0)
+    message.get_by_role("button", name="Dismiss").click()
+    expect(message).to_have_count(0)
     dashboard.choose_depth("Try")
     dashboard.open_tab("Train")
     assert practice(page) == "many"

@@ -66,15 +66,15 @@ def taps_of_a_spectator(dashboard: Dashboard) -> None:
 def fits_and_is_accessible(dashboard: Dashboard) -> None:
     """No tab of any depth scrolls sideways, is too small for a thumb, or fails axe."""
     page = dashboard.page
-    found: dict[str, list[str]] = {}
+    problems: dict[str, list[str]] = {}
     for depth, tab in each_tab(dashboard):
         for size in (NARROW, PHONE):
             page.set_viewport_size(size)
             if (width := dashboard.scroll_width()) > size["width"]:
-                found[f"{depth} {tab} at {size['width']}"] = [f"{width} px wide"]
+                problems[f"{depth} {tab} at {size['width']}"] = [f"{width} px wide"]
         expect(dashboard.headline).to_be_in_viewport(ratio=1)
         if too_small := dashboard.small_targets(THUMB_PX):
-            found[f"{depth} {tab} targets"] = too_small
+            problems[f"{depth} {tab} targets"] = too_small
         if violations := dashboard.violations_in_both_themes():
-            found[f"{depth} {tab}"] = violations
-    assert found == {}
+            problems[f"{depth} {tab}"] = violations
+    assert problems == {}

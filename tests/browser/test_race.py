@@ -129,14 +129,14 @@ def boxes(shown: Locator) -> list[tuple[str, dict[str, float]]]:
 
     Read one by one, an element that is hidden meanwhile would be waited for.
     """
-    found: list[tuple[str, dict[str, float]]] = shown.evaluate_all(
+    shown_boxes: list[tuple[str, dict[str, float]]] = shown.evaluate_all(
         """shown => shown.map(one => {
             const frame = window.frameElement?.getBoundingClientRect() ?? {x: 0, y: 0};
             const {x, y, width, height} = one.getBoundingClientRect();
             return [one.innerText, {x: x + frame.x, y: y + frame.y, width, height}];
         }).filter(([, {width}]) => width > 0)"""
     )
-    return found
+    return shown_boxes
 
 
 def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
@@ -147,12 +147,12 @@ def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
         return [("labels", f"{len(labels)} are shown")]
     chips = boxes(dashboard.labels.locator(".chip"))
     return [
-        (words, others)
-        for (words, one), (others, other) in combinations((*labels, *chips), 2)
-        if one["x"] < other["x"] + other["width"]
-        and other["x"] < one["x"] + one["width"]
-        and one["y"] < other["y"] + other["height"]
-        and other["y"] < one["y"] + one["height"]
+        (words, other_words)
+        for (words, box), (other_words, other_box) in combinations((*labels, *chips), 2)
+        if box["x"] < other_box["x"] + other_box["width"]
+        and other_box["x"] < box["x"] + box["width"]
+        and box["y"] < other_box["y"] + other_box["height"]
+        and other_box["y"] < box["y"] + box["height"]
     ]
 
 
@@ -298,16 +298,16 @@ def test_two_operators_and_one_stage(
     dashboard.open(link)
     dashboard.button("Train, don’t race").click()
     expect(dashboard.page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
-    held = dashboard.get("/api/v1/stage")["run_id"]
+    run_on_stage = dashboard.get("/api/v1/stage")["run_id"]
 
     with new_page(flat_browser) as page:
         other = Dashboard(page, has_3d=False)
         other.open(link)
         other.button("Train, don’t race").click()
         expect(other.page.get_by_text("The stage shows another run")).to_be_visible()
-        assert other.get("/api/v1/stage")["run_id"] == held
+        assert other.get("/api/v1/stage")["run_id"] == run_on_stage
         other.button("Show on stage").click()
         expect(other.page.get_by_text("The stage shows another run")).to_have_count(0)
-        assert other.get("/api/v1/stage")["run_id"] != held
+        assert other.get("/api/v1/stage")["run_id"] != run_on_stage
         assert other.complaints == []
     expect(dashboard.page.get_by_text("The stage shows another run")).to_be_visible()

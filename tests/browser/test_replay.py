@@ -40,8 +40,8 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
 
         dashboard.open(server.link(run=race["id"], t=2.5, depth="try", tab="board"))
         expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
-        own = page.get_by_role("slider", name="Moment of your replay")
-        expect(own).to_have_value("2.5")
+        timeline = page.get_by_role("slider", name="Moment of your replay")
+        expect(timeline).to_have_value("2.5")
         dashboard.eventually(
             lambda: dashboard.has_figures(lanes=2), "the scoreboard follows the replay"
         )
@@ -88,7 +88,7 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
         expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
         dashboard.button("Live").click()
         dashboard.button("Replay on this page").click()
-        expect(own).to_be_enabled()
+        expect(timeline).to_be_enabled()
         # The bar of the stage is the operators'; whoever touches it goes on by themselves.
         dashboard.button("Live").click()
         dashboard.moment.fill("1")

@@ -74,11 +74,11 @@ def test_a_practice_that_was_stopped_stays_on_stage_and_goes_on_with_its_race(
         dashboard.button("Stop").click()
         where = re.compile(r"^Stopped at step (\d+) of 1500$")
         expect(dashboard.headline).to_have_text(where)
-        found = where.match(dashboard.headline.inner_text())
-        assert found is not None
-        assert int(found[1]) == practised(dashboard)
-        expect(dashboard.notes).to_contain_text(f"The training was stopped at step {found[1]} of")
-        expect(dashboard.shown_run).to_contain_text(f"stopped at step {found[1]} of 1500")
+        match = where.match(dashboard.headline.inner_text())
+        assert match is not None
+        assert int(match[1]) == practised(dashboard)
+        expect(dashboard.notes).to_contain_text(f"The training was stopped at step {match[1]} of")
+        expect(dashboard.shown_run).to_contain_text(f"stopped at step {match[1]} of 1500")
         (training,), (race,) = (dashboard.get(f"api/v1/{kind}")["items"] for kind in KINDS)
         assert (training["state"], race["state"]) == ("stopped", "stopped")
         # The race that was queued behind it never ran: there is nothing of it to see.
@@ -88,7 +88,7 @@ def test_a_practice_that_was_stopped_stays_on_stage_and_goes_on_with_its_race(
         expect(dashboard.headline).to_have_text(where)
         dashboard.button("Go on with the race").click()
         expect(dashboard.notes.get_by_text("was stopped")).to_have_count(0)
-        dashboard.eventually(lambda: practised(dashboard) > int(found[1]), "another step")
+        dashboard.eventually(lambda: practised(dashboard) > int(match[1]), "another step")
         (training,), (race,) = (dashboard.get(f"api/v1/{kind}")["items"] for kind in KINDS)
         assert (race["state"], race["waiting_for"]) == ("queued", [training["id"]])
         dashboard.button("Stop").click()
@@ -127,10 +127,10 @@ def is_at_the_step_of_the_picture(dashboard: Dashboard) -> None:
     """The bar counts the steps that the robot's label counts, however many were ordered."""
     label = dashboard.page.get_by_text(re.compile(r"(interrupted|stopped) at step \d+ of")).first
     expect(label).to_be_visible()
-    found = re.search(r"at step (\d+) of", label.inner_text())
-    assert found is not None
+    match = re.search(r"at step (\d+) of", label.inner_text())
+    assert match is not None
     moment = dashboard.page.get_by_role("slider", name="Moment that is shown")
-    expect(moment).to_have_attribute("aria-valuetext", f"step {found[1]} of step {found[1]}")
+    expect(moment).to_have_attribute("aria-valuetext", f"step {match[1]} of step {match[1]}")
 
 
 def done(dashboard: Dashboard, kind: str = "trainings") -> int:
@@ -146,5 +146,5 @@ def practised(dashboard: Dashboard) -> int:
 
 def state(dashboard: Dashboard) -> str:
     (race,) = dashboard.get("api/v1/races")["items"]
-    found: str = race["state"]
-    return found
+    race_state: str = race["state"]
+    return race_state

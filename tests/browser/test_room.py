@@ -94,18 +94,18 @@ def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Ser
         projector.sees(f"{PUBLIC_URL.removeprefix('http://')}/r/{in_groups(code)}")
         is_read_from_afar(projector)
         is_accessible(projector, is_touched=False)
-        with phone(flat_browser) as one, phone(flat_browser) as two:
-            gets_to_its_robot_in_three_taps(one, school, code)
-            keeps_name_and_seed(one, school, code)
-            two.enter(school, code)
-            two.press("Join")
-            assert two.who[1] != one.who[1]
-            answers_in_two_steps(two)
-            shows_the_class(teacher, projector, one, two)
-            follows_to_a_choice(teacher, projector, one, two)
-            draws_a_curve_by_keys(teacher, projector, one)
-            taps_a_point(teacher, two)
-            stands_still_and_ends(teacher, projector, one)
+        with phone(flat_browser) as first_pupil, phone(flat_browser) as second_pupil:
+            gets_to_its_robot_in_three_taps(first_pupil, school, code)
+            keeps_name_and_seed(first_pupil, school, code)
+            second_pupil.enter(school, code)
+            second_pupil.press("Join")
+            assert second_pupil.who[1] != first_pupil.who[1]
+            answers_in_two_steps(second_pupil)
+            shows_the_class(teacher, projector, first_pupil, second_pupil)
+            follows_to_a_choice(teacher, projector, first_pupil, second_pupil)
+            draws_a_curve_by_keys(teacher, projector, first_pupil)
+            taps_a_point(teacher, second_pupil)
+            stands_still_and_ends(teacher, projector, first_pupil)
         # A page of it that asks just now would be told that there is no such room.
         assert projector.complaints == []
         screen.goto("about:blank")
@@ -153,7 +153,9 @@ def answers_in_two_steps(pupil: RoomPage) -> None:
     expect(pupil.distance).to_be_visible()
 
 
-def shows_the_class(teacher: RoomPage, projector: RoomPage, one: RoomPage, two: RoomPage) -> None:
+def shows_the_class(
+    teacher: RoomPage, projector: RoomPage, first_pupil: RoomPage, second_pupil: RoomPage
+) -> None:
     figures = teacher.page.get_by_label("How far the class is")
     expect(figures).to_have_text(re.compile(r"joined2\s*locked2\s*started2\s*finished2"))
     teacher.sees("said 0.45 m · went")
@@ -164,17 +166,17 @@ def shows_the_class(teacher: RoomPage, projector: RoomPage, one: RoomPage, two: 
     is_read_from_afar(projector)
 
     teacher.press("Reveal")
-    for pupil in (one, two):
+    for pupil in (first_pupil, second_pupil):
         pupil.sees(re.compile(r"Rank [12] of 2 seeds"))
         pupil.sees("Nothing differs but luck.")
         pupil.sees("of all robots went less far than you said")
         expect(pupil.page.locator(".own-dot")).to_have_count(1)
-    is_accessible(one)
+    is_accessible(first_pupil)
     expect(projector.page.get_by_role("img", name="2 predictions")).to_be_visible()
     is_read_from_afar(projector)
     is_accessible(projector, is_touched=False)
 
-    name = one.who[0]
+    name = first_pupil.who[0]
     teacher.press(f"Spotlight {name}")
     projector.sees(name)
     is_read_from_afar(projector)
@@ -184,20 +186,20 @@ def shows_the_class(teacher: RoomPage, projector: RoomPage, one: RoomPage, two: 
 
 
 def follows_to_a_choice(
-    teacher: RoomPage, projector: RoomPage, one: RoomPage, two: RoomPage
+    teacher: RoomPage, projector: RoomPage, first_pupil: RoomPage, second_pupil: RoomPage
 ) -> None:
     teacher.press("Next: One run")
-    for pupil, choice in ((one, "Nothing"), (two, "It is better")):
+    for pupil, choice in ((first_pupil, "Nothing"), (second_pupil, "It is better")):
         pupil.press(choice)
         pupil.press("Lock my prediction")
         pupil.sees("Locked.")
     projector.sees("2 of 2 locked")
     expect(projector.page.locator(".asked-choices b")).to_have_count(0)
     teacher.press("Reveal")
-    one.sees("You were right.")
-    two.sees("That was not it.")
+    first_pupil.sees("You were right.")
+    second_pupil.sees("That was not it.")
     expect(projector.page.locator(".asked-choices")).to_have_text(re.compile(r"better1\s*Nothing1"))
-    is_accessible(two)
+    is_accessible(second_pupil)
     is_read_from_afar(projector)
 
 

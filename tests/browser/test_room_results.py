@@ -50,60 +50,60 @@ def test_a_what_if_is_there_after_a_reload(flat_browser: Browser, school: Servin
     code = open_room(school, WHAT_IF)
     with (
         phone(flat_browser) as teacher,
-        phone(flat_browser) as one,
-        phone(flat_browser) as other,
+        phone(flat_browser) as first_pupil,
+        phone(flat_browser) as second_pupil,
     ):
         teach(teacher, school, code)
-        for pupil in (one, other):
+        for pupil in (first_pupil, second_pupil):
             pupil.enter(school, code)
             pupil.press("Join")
-        one.page.get_by_role("textbox", name=re.compile("steps", re.IGNORECASE)).fill("120")
-        one.press("Go: try it on thirty robots")
-        thirty = one.page.get_by_role("region", name="Thirty robots")
+        first_pupil.page.get_by_role("textbox", name=re.compile("steps", re.IGNORECASE)).fill("120")
+        first_pupil.press("Go: try it on thirty robots")
+        thirty = first_pupil.page.get_by_role("region", name="Thirty robots")
         expect(thirty).to_contain_text("With these settings")
         before = thirty.inner_text()
         # What was asked already is not offered again until the settings differ.
-        expect(one.button("Go again with these settings")).to_have_count(0)
-        one.page.reload()
+        expect(first_pupil.button("Go again with these settings")).to_have_count(0)
+        first_pupil.page.reload()
         expect(thirty).to_have_text(re.compile(r"With these settings: typically"))
         assert thirty.inner_text() == before
         figures = teacher.page.get_by_label("How far the class is")
         expect(figures).to_have_text(re.compile(r"joined2\s*started1\s*finished1"))
         teacher.sees("went")
         teacher.press("Reveal")
-        other.sees("1 seed")
-        expect(other.page.get_by_role("region", name="Thirty robots")).to_have_count(0)
-        one.sees("Rank 1 of 1 seed")
-        assert one.violations_in_both_themes() == []
+        second_pupil.sees("1 seed")
+        expect(second_pupil.page.get_by_role("region", name="Thirty robots")).to_have_count(0)
+        first_pupil.sees("Rank 1 of 1 seed")
+        assert first_pupil.violations_in_both_themes() == []
 
 
 def test_what_is_not_approved_is_shown_to_nobody(flat_browser: Browser, school: Serving) -> None:
     code = open_room(school, TRAINING, needs_approval=True)
     with (
         phone(flat_browser) as teacher,
-        phone(flat_browser) as one,
-        phone(flat_browser) as other,
+        phone(flat_browser) as first_pupil,
+        phone(flat_browser) as second_pupil,
         new_page(flat_browser, viewport=SCREEN) as screen,
     ):
         teach(teacher, school, code)
         projector = RoomPage(screen, has_3d=False)
         screen.context.add_cookies(teacher.page.context.cookies())  # type: ignore[arg-type]
         projector.enter(school, code, "?projector")
-        for pupil in (one, other):
+        for pupil in (first_pupil, second_pupil):
             pupil.enter(school, code)
             pupil.press("Join")
             pupil.page.get_by_label("Your prediction").fill("0.3")
             pupil.press("Lock my prediction, and go")
             expect(pupil.distance).to_be_visible()
-        name = other.who[0]
+        name = second_pupil.who[0]
         teacher.press("Reveal")
-        one.sees("Rank 1 of 1 seed")
+        first_pupil.sees("Rank 1 of 1 seed")
         projector.sees("2 of 2 started")
         expect(screen.get_by_role("img", name=re.compile("distances"))).to_have_count(0)
 
         teacher.press(f"Approve {name}")
         expect(teacher.page.get_by_role("button", name=f"Approve {name}")).to_have_count(0)
         projector.sees("typical of 1 robot")
-        one.sees(re.compile(r"Rank [12] of 2 seeds"))
-        other.sees("Rank 1 of 1 seed")
+        first_pupil.sees(re.compile(r"Rank [12] of 2 seeds"))
+        second_pupil.sees("Rank 1 of 1 seed")
         assert teacher.violations_in_both_themes() == []

@@ -51,7 +51,7 @@ def test_a_spectator_reads_the_settings_tries_others_and_replays(
         dashboard.button("Back to the settings on stage").click()
         expect(alpha_of(dashboard)).to_have_value("0.7")
         expect(dashboard.page).not_to_have_url(re.compile("alpha"))
-        assert {race["id"]} == {one["id"] for one in api.get("races").json()["items"]}
+        assert {race["id"]} == {run["id"] for run in api.get("races").json()["items"]}
 
 
 def begin_a_replay_with_space(dashboard: Dashboard) -> None:
@@ -98,17 +98,17 @@ def reads_only(dashboard: Dashboard) -> int:
 def replay_explain_and_download(dashboard: Dashboard, race_id: str) -> None:
     """What a spectator can do is offered as buttons, and does it on this page only."""
     page = dashboard.page
-    own = page.get_by_role("region", name="You are watching")
-    own.get_by_role("button", name="Replay it here").click()
+    region = page.get_by_role("region", name="You are watching")
+    region.get_by_role("button", name="Replay it here").click()
     expect(page).to_have_url(re.compile(f"run={race_id}"))
     expect(dashboard.button("One robot step on")).to_be_visible()
     explained = dashboard.open_tab("Why")
     expect(explained.get_by_role("textbox", name="Step", exact=True)).to_be_in_viewport()
-    own.get_by_role("button", name="Back to the stage").click()
+    region.get_by_role("button", name="Back to the stage").click()
     expect(page).not_to_have_url(re.compile("run="))
-    own.get_by_text("Download it").click()
+    region.get_by_text("Download it").click()
     with page.expect_download() as saved:
-        own.get_by_role("link", name="Recording", exact=True).click()
+        region.get_by_role("link", name="Recording", exact=True).click()
     assert Path(saved.value.path()).read_bytes()[:1] == b"{"
     assert dashboard.violations() == []
 

@@ -30,16 +30,16 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
         run = finished(api, "trainings", {**WALK, "steps": 120, "agent": "q-learning"})
         hold(api, run, 5.0)
     dashboard.open(shared_server.link(depth="study", tab="why"))
-    told, step = explanation(page), step_number(page)
+    explained, step = explanation(page), step_number(page)
 
     # It follows the stage, and tells the step as the server explains it.
-    expect(told).to_contain_text("Q-learning moved legs")
+    expect(explained).to_contain_text("Q-learning moved legs")
     number = int(step.input_value())
     assert 1 < number < 120
     answer = dashboard.get(f"/api/v1/runs/{run['id']}/explain?step={number}")
-    expect(told).to_contain_text(answer["choice"]["sentences"][0])
-    expect(told).to_contain_text("new value = (1 − α)")
-    expect(told).to_contain_text("stored value to the last bit")
+    expect(explained).to_contain_text(answer["choice"]["sentences"][0])
+    expect(explained).to_contain_text("new value = (1 − α)")
+    expect(explained).to_contain_text("stored value to the last bit")
     # The head of the panel tells the move, and what came of it.
     pair, cell = answer["action"]
     legs, place = "+".join(map(str, answer["pairs"][pair])), answer["cell_names"][cell]
@@ -52,7 +52,7 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     expect(step).to_have_value(str(number + 1))
     step.fill("1")
     step.press("Enter")
-    expect(told).to_contain_text("It explores")
+    expect(explained).to_contain_text("It explores")
     expect(dashboard.button("One step back")).to_be_disabled()
     reads_the_whole_table(dashboard)
     dashboard.button("Follow the stage").click()
@@ -61,8 +61,8 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     # Who watches has the reason, and a way back.
     dashboard.choose_depth("Watch")
     dashboard.panel.get_by_role("button", name=re.compile("^Explain")).click()
-    expect(told).to_contain_text("Why this move")
-    expect(told).not_to_contain_text("new value")
+    expect(explained).to_contain_text("Why this move")
+    expect(explained).not_to_contain_text("new value")
     dashboard.panel.get_by_role("button", name="Back to the board").click()
     expect(dashboard.scoreboard).to_be_visible()
 
@@ -79,13 +79,13 @@ def reads_the_whole_table(dashboard: Dashboard) -> None:
     grid, read = panel.get_by_role("grid"), panel.get_by_test_id("heat-read").locator("b")
     expect(panel.get_by_role("heading", name="The whole table before step 120")).to_be_visible()
     expect(read).to_have_text(re.compile("^Legs .*: "))
-    made = read.inner_text()
+    before = read.inner_text()
     grid.focus()
     for key in ("Home", "PageUp", "PageDown", "ArrowUp", "End", "ArrowRight", "ArrowLeft"):
         page.keyboard.press(key)
     expect(panel.get_by_role("gridcell")).to_contain_text("legs 3+6 to back left")
     page.keyboard.press("Escape")
-    expect(read).to_have_text(made)
+    expect(read).to_have_text(before)
     grid.hover(position={"x": 3, "y": 3})
     expect(read).to_contain_text("Legs 1+4 to home")
     assert dashboard.violations() == []
@@ -132,16 +132,16 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
     )
     expect(note).to_contain_text(state)
     view.wait_for_function(HAS_NODE, arg=f"{GHOST}/0")
-    found = state.search(note.inner_text())
-    assert found is not None
+    match = state.search(note.inner_text())
+    assert match is not None
     grid.hover(position={"x": 3, "y": 40})
     expect(note).to_contain_text("stands in the chosen state")
     note.hover()
-    expect(panel.get_by_test_id("heat-read")).to_contain_text(found[1])
+    expect(panel.get_by_test_id("heat-read")).to_contain_text(match[1])
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     expect(note).to_contain_text("legs 1+4 home, legs 2+5 home, legs 3+6")
-    expect(note).not_to_contain_text(found[1])
+    expect(note).not_to_contain_text(match[1])
     assert dashboard.violations() == []
     page.keyboard.press("Escape")
     view.wait_for_function(f"name => !({HAS_NODE})(name)", arg=GHOST)
@@ -165,16 +165,16 @@ def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serv
         lanes = [{"agent": "q-learning", "training_id": practice["id"]}, {"agent": "greedy"}]
         hold(api, finished(api, "races", {**WALK, "steps": 6, "lanes": lanes}), 1.0)
     dashboard.open(shared_server.link(depth="study", tab="why"))
-    told, lane = explanation(page), page.get_by_role("group", name="Lane", exact=True)
+    explained, lane = explanation(page), page.get_by_role("group", name="Lane", exact=True)
 
-    expect(told).to_contain_text("it does not learn here")
+    expect(explained).to_contain_text("it does not learn here")
     expect(dashboard.open_tab("Table")).to_contain_text("at the end of its practice")
     lane.get_by_role("button", name="Greedy").click()
     expect(dashboard.panel).to_contain_text("This lane has no table of a training")
     dashboard.open_tab("Why")
-    expect(told).to_contain_text("Greedy moved legs")
-    expect(told).to_contain_text("It simulated 12 steps before it took this one")
-    expect(told.get_by_role("table").last.get_by_role("row")).to_have_count(6)
+    expect(explained).to_contain_text("Greedy moved legs")
+    expect(explained).to_contain_text("It simulated 12 steps before it took this one")
+    expect(explained.get_by_role("table").last.get_by_role("row")).to_have_count(6)
     assert dashboard.violations() == []
 
 
@@ -206,11 +206,11 @@ def test_why_a_learner_loses_is_asked_on_the_board(
     expect(ask).to_have_count(1)  # not of greedy, which has won
     ask.click()
 
-    told = explanation(dashboard.page)
+    explained = explanation(dashboard.page)
     answer = dashboard.get(f"/api/v1/races/{race['id']}/loss?lane=0")
     for sentence in answer["sentences"]:
-        expect(told).to_contain_text(sentence)
-    expect(told.get_by_text("Why does it lose?")).to_be_focused()
+        expect(explained).to_contain_text(sentence)
+    expect(explained.get_by_text("Why does it lose?")).to_be_focused()
     assert dashboard.violations() == []
     dashboard.page.set_viewport_size({"width": 360, "height": 780})
     # The page learns of its new width a moment later.
@@ -230,6 +230,6 @@ def test_why_a_learner_loses_is_asked_on_the_board(
         ),
     )
     dashboard.page.reload()
-    told.get_by_text("Why does it lose?").click()
-    expect(told).to_contain_text("Not told here: It keeps no table.")
+    explained.get_by_text("Why does it lose?").click()
+    expect(explained).to_contain_text("Not told here: It keeps no table.")
     assert dashboard.complaints.pop().startswith("409")

@@ -31,7 +31,7 @@ def test_no_control_is_too_small(flat_browser: Browser, tmp_path: Path) -> None:
 
 def too_small(dashboard: Dashboard, server: Serving, least_px: int) -> dict[str, list[str]]:
     """Return the controls that are smaller, by the role and the view that have them."""
-    page, found = dashboard.page, dict[str, list[str]]()
+    page, by_view = dashboard.page, dict[str, list[str]]()
     for role, token in (("spectator", {}), ("operator", {"token": TOKEN})):
         dashboard.open(server.link(depth="study", tab="what-if", **token))
         expect(dashboard.headline).to_be_visible()
@@ -43,5 +43,5 @@ def too_small(dashboard: Dashboard, server: Serving, least_px: int) -> dict[str,
             page.evaluate("view => { location.hash = view; }", view)
             expect(shown).to_be_visible()
             if small := dashboard.small_targets(least_px):
-                found[f"{role} {view}"] = small
-    return found
+                by_view[f"{role} {view}"] = small
+    return by_view

@@ -84,43 +84,43 @@ def test_a_tournament_of_a_room(
 ) -> None:
     with (
         school.api(TOKEN) as api,
-        phone(flat_browser) as one,
-        phone(flat_browser) as two,
+        phone(flat_browser) as first_pupil,
+        phone(flat_browser) as second_pupil,
         new_page(flat_browser, viewport=SCREEN) as screen,
     ):
         code = api.post("rooms", json={"lesson": LESSON}).raise_for_status().json()["code"]
-        for pupil in (one, two):
+        for pupil in (first_pupil, second_pupil):
             pupil.enter(school, code)
             pupil.press("Join")
         opens_it_in_the_cockpit(teacher, school, code)
 
-        names = one.who[0], two.who[0]
-        for pupil in (one, two):
+        names = first_pupil.who[0], second_pupil.who[0]
+        for pupil in (first_pupil, second_pupil):
             pupil.page.get_by_role("link", name="Enter the tournament: Cup of the class").tap()
             pupil.sees("practises at most 40 steps, then walks 50, on 5 secret seeds")
             pupil.sees(
                 "everybody sees what you entered, and without your name once the room is gone"
             )
-        enters_a_learner(one)
-        enters_by_keys_alone(two)
-        sees_the_ranking(two, names)
+        enters_a_learner(first_pupil)
+        enters_by_keys_alone(second_pupil)
+        sees_the_ranking(second_pupil, names)
 
         projector = RoomPage(screen, has_3d=False)
         screen.context.add_cookies(teacher.page.context.cookies())  # type: ignore[arg-type]
         projector.enter(school, code, "?projector")
         projector.sees("Tournament: Cup of the class")
         is_read_from_afar(projector)
-        projector.page.goto(f"{one.page.url}?projector")
+        projector.page.goto(f"{first_pupil.page.url}?projector")
         ranked(projector, names[0])
         is_read_from_afar(projector)
 
-        ends_it(teacher, one.page.url)
+        ends_it(teacher, first_pupil.page.url)
         repeats_it(teacher, tmp_path)
-        one.sees("Ended")
-        expect(row_of(two, names[0])).to_contain_text("Sarsa, α 0.5, 30 steps")
-        one.sees("Secret and draws")
-        one.sees("Flat ground")
-        is_accessible(one)
+        first_pupil.sees("Ended")
+        expect(row_of(second_pupil, names[0])).to_contain_text("Sarsa, α 0.5, 30 steps")
+        first_pupil.sees("Secret and draws")
+        first_pupil.sees("Flat ground")
+        is_accessible(first_pupil)
         projector.sees("Ended")
         is_read_from_afar(projector)
         is_accessible(projector, is_touched=False)
@@ -198,12 +198,12 @@ def enters_by_keys_alone(pupil: RoomPage) -> None:
 
 
 def sees_the_ranking(pupil: RoomPage, names: tuple[str, str]) -> None:
-    other, own = names
+    name_of_other, own_name = names
     for name in (*REFERENCES, *names):
         assert re.search(r"\d\.\d\d m", ranked(pupil, name))
     # What others have entered is shown at the end alone.
-    assert "Sarsa" not in ranked(pupil, other)
-    assert "Double Q" in ranked(pupil, own)
+    assert "Sarsa" not in ranked(pupil, name_of_other)
+    assert "Double Q" in ranked(pupil, own_name)
     marks = pupil.page.get_by_role("img", name=re.compile(r"m, 95 % interval .+ to .+ m$"))
     expect(marks).to_have_count(5)
     expect(pupil.page.get_by_role("heading", name="Being judged")).to_have_count(0)
@@ -303,8 +303,8 @@ def is_refused_beside_the_field(page: Page, table: str) -> None:
     field = page.get_by_label("What enters")
     field.select_option(label=table)
     page.get_by_role("button", name="Enter", exact=True).click()
-    told = page.locator("#refused-training_id")
-    expect(told).to_contain_text("has practised 18 steps, with all that it continues")
+    error = page.locator("#refused-training_id")
+    expect(error).to_contain_text("has practised 18 steps, with all that it continues")
     expect(field).to_have_attribute("aria-invalid", "true")
     expect(field).to_have_attribute("aria-describedby", "refused-training_id")
     expect(page.locator(".problem")).to_have_count(0)
@@ -327,13 +327,13 @@ def test_what_is_not_there_is_told(flat_browser: Browser, school: Serving) -> No
             none.sees("No tournament here")
             is_accessible(none)
             none.complaints.clear()
-            made = api.post("tournaments", json={"title": "Open", "rules": ENDLESS}).json()
-            visit(watches, school, made["id"])
+            tournament = api.post("tournaments", json={"title": "Open", "rules": ENDLESS}).json()
+            visit(watches, school, tournament["id"])
             watches.sees("The references are the first")
             expect(watches.button("Enter")).to_have_count(0)
             expect(watches.button("End…")).to_have_count(0)
             is_accessible(watches)
-        api.delete(f"tournaments/{made['id']}").raise_for_status()
+        api.delete(f"tournaments/{tournament['id']}").raise_for_status()
 
 
 @pytest.mark.test
@@ -343,13 +343,13 @@ def test_a_tournament_goes_on_when_its_server_comes_back(
     with new_page(flat_browser, viewport=PHONE, has_touch=True, is_mobile=True) as page:
         pupil = RoomPage(page, has_3d=False)
         with serving(tmp_path, token=TOKEN) as first, first.api(TOKEN) as api:
-            made = api.post("tournaments", json={"title": "Cup", "rules": ENDLESS}).json()
-            visit(pupil, first, made["id"])
+            tournament = api.post("tournaments", json={"title": "Cup", "rules": ENDLESS}).json()
+            visit(pupil, first, tournament["id"])
             pupil.sees("The references are the first")
             first.kill()
             pupil.sees("Reconnecting. This is the last that is known; entries are kept.")
             is_accessible(pupil)
         with serving(tmp_path, port=first.port, token=TOKEN) as second, second.api(TOKEN) as api:
             expect(page.get_by_text("Reconnecting")).to_have_count(0)
-            api.post(f"tournaments/{made['id']}/end", json={}).raise_for_status()
+            api.post(f"tournaments/{tournament['id']}/end", json={}).raise_for_status()
             pupil.sees("Judging the last entries")

@@ -64,8 +64,8 @@ def chooses_learner(dashboard: Dashboard, title: str) -> None:
 
 
 def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = dashboard.get("api/v1/trainings")["items"]
-    return found
+    items: list[dict[str, Any]] = dashboard.get("api/v1/trainings")["items"]
+    return items
 
 
 def test_a_server_that_is_away_is_told_and_asked_again(

@@ -74,13 +74,13 @@ def keeps_budgets(dashboard: Dashboard, state: str) -> None:
 
 def is_accessible(dashboard: Dashboard) -> None:
     """Check each tab of each depth, in both themes; each control can be met by a pointer."""
-    found: dict[str, list[str]] = {}
+    problems: dict[str, list[str]] = {}
     for depth, tab in each_tab(dashboard):
         if too_small := dashboard.small_targets(LEAST_PX):
-            found[f"{depth} {tab} targets"] = too_small
+            problems[f"{depth} {tab} targets"] = too_small
         if violations := dashboard.violations_in_both_themes():
-            found[f"{depth} {tab}"] = violations
-    assert found == {}
+            problems[f"{depth} {tab}"] = violations
+    assert problems == {}
 
 
 def test_each_tab_keeps_its_budget_and_never_scrolls(dashboard: Dashboard, server: Serving) -> None:
@@ -90,10 +90,10 @@ def test_each_tab_keeps_its_budget_and_never_scrolls(dashboard: Dashboard, serve
     dashboard.stand_in_for_stage()
     keeps_budgets(dashboard, "first")
     # The page tells in a list of tabs what it shows.
-    told = re.compile(r"^Q-learning walks .* so far · Racing Hexapods$")
+    title = re.compile(r"^Q-learning walks .* so far · Racing Hexapods$")
     with server.api() as api:
         practice = api.post("trainings", json=PRACTICE).json()
-        expect(page).to_have_title(told)
+        expect(page).to_have_title(title)
         keeps_budgets(dashboard, "practising")
         api.post(f"trainings/{practice['id']}/stop").raise_for_status()
 

@@ -23,5 +23,5 @@ _SMALL_TEXTS = """least => {
 
 def small_texts(page: Page, least_px: float) -> list[str]:
     """Return the texts that can be seen in a type that is smaller than this."""
-    found: list[str] = page.evaluate(_SMALL_TEXTS, least_px)
-    return found
+    texts: list[str] = page.evaluate(_SMALL_TEXTS, least_px)
+    return texts

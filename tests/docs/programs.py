@@ -14,9 +14,9 @@ _BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 def blocks(page: Path) -> list[str]:
     """Return the Python programs of a page; those after the first of python.md begin as it does."""
-    found = _BLOCK.findall(page.read_text("utf-8"))
+    programs = _BLOCK.findall(page.read_text("utf-8"))
     begin = "import hexapods as hx\n" if page.name == "python.md" else ""
-    return [begin * (number > 0) + block for number, block in enumerate(found)]
+    return [begin * (number > 0) + block for number, block in enumerate(programs)]
 
 
 def programs() -> Mapping[str, str]:

@@ -61,8 +61,8 @@ def _practise(learner: Learner, config: TrainingConfig, steps: int) -> None:
 @pytest.mark.parametrize("agent", DEEP)
 def test_frozen_network_is_matrices_that_need_no_torch(agent: str) -> None:
     problem = hx.Problem(((1, 3, 5), (2, 4, 6)), FootGrid().cells)
-    own = {"rng": np.random.default_rng(0), "problem": problem, "explore": False}
-    network = build(find(agent), own)
+    offered = {"rng": np.random.default_rng(0), "problem": problem, "explore": False}
+    network = build(find(agent), offered)
     biases = np.zeros(10)
     biases[[0, 7]] = 3.0, 2.0  # group 0 to cell 0, group 1 to cell 2
     network.load({"weights0": np.zeros((10, 10)), "biases0": biases})

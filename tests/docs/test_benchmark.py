@@ -22,6 +22,6 @@ def test_every_task_is_there_with_its_best_known_walk() -> None:
 def test_a_best_known_walk_is_that_of_the_protocol(
     name: str, distance_m: str, found_by: str
 ) -> None:
-    known = TASKS[name].best_known
-    assert distance_m == f"{known.distance_m:.3f}"
-    assert found_by == known.found_by
+    best_known = TASKS[name].best_known
+    assert distance_m == f"{best_known.distance_m:.3f}"
+    assert found_by == best_known.found_by

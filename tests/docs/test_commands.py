@@ -17,12 +17,12 @@ _BLOCK = re.compile(r"^```(?:sh|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 def commands() -> list[str]:
     """Return every command that begins with `hexapods`, continued lines joined."""
-    found = []
+    documented = []
     for page in _PAGES:
         for block in _BLOCK.findall(page.read_text("utf-8")):
             lines = block.replace("\\\n", " ").splitlines()
-            found += [line for line in lines if line.startswith("hexapods ")]
-    return found
+            documented += [line for line in lines if line.startswith("hexapods ")]
+    return documented
 
 
 def test_there_are_commands() -> None:
@@ -32,7 +32,7 @@ def test_there_are_commands() -> None:
 @pytest.mark.parametrize("command", commands())
 def test_a_documented_command_is_valid(command: str) -> None:
     # What follows is of the shell: other commands, and a variable of the page.
-    own = re.split(r" [|>] ", command.replace("$agents", "q-learning"))[0]
-    words = shlex.split(own, comments=True)[1:]
+    hexapods_command = re.split(r" [|>] ", command.replace("$agents", "q-learning"))[0]
+    words = shlex.split(hexapods_command, comments=True)[1:]
     options = parser_of(words).parse_args(words)
     assert options.command == words[0]

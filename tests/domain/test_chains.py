@@ -30,8 +30,8 @@ FOLLOWING = {"quadruped": quadruped_model, "four joints": four_joint_model, "mix
 
 
 def kinematics_of(model: RobotModel, gait: str = "trot") -> FootKinematics:
-    made = model_robot(model, "own")
-    return legs_of(made).under(resolve(gait, made.azimuths_deg))
+    robot = model_robot(model, "own")
+    return legs_of(robot).under(resolve(gait, robot.azimuths_deg))
 
 
 def offsets(legs: int, within_m: float, count: int = 300) -> FloatArray:
@@ -44,34 +44,36 @@ def offsets(legs: int, within_m: float, count: int = 300) -> FloatArray:
 @pytest.mark.parametrize("name", ["stiff", "ant", "dog", "centipede"])
 def test_numeric_kinematics_is_the_closed_form_of_a_built_in_robot(name: str) -> None:
     closed, numeric = PRESETS[name], model_robot(model_of(PRESETS[name]), name)
-    one = legs_of(closed).under(resolve("trot", closed.azimuths_deg))
-    other = legs_of(numeric).under(resolve("trot", numeric.azimuths_deg))
+    closed_legs = legs_of(closed).under(resolve("trot", closed.azimuths_deg))
+    numeric_legs = legs_of(numeric).under(resolve("trot", numeric.azimuths_deg))
     places = offsets(len(closed.legs), 0.02)
-    angles = other.joint_angles(places)
+    angles = numeric_legs.joint_angles(places)
 
-    assert np.abs(one.homes_m - other.homes_m).max() < 1e-9
-    assert np.abs(angles - one.joint_angles(places)).max() < 1e-9
+    assert np.abs(closed_legs.homes_m - numeric_legs.homes_m).max() < 1e-9
+    assert np.abs(angles - closed_legs.joint_angles(places)).max() < 1e-9
     assert legs_of(numeric).feet_in_body(angles) == pytest.approx(
         legs_of(closed).feet_in_body(angles), abs=1e-9
     )
     pose = angles[0].tolist()
-    assert other.foot_offsets(pose) == pytest.approx(np.array(one.foot_offsets(pose)), abs=1e-9)
-    for links, own in zip(
+    assert numeric_legs.foot_offsets(pose) == pytest.approx(
+        np.array(closed_legs.foot_offsets(pose)), abs=1e-9
+    )
+    for links, numeric_links in zip(
         legs_of(closed).links_in_body(pose), legs_of(numeric).links_in_body(pose), strict=True
     ):
-        assert own == pytest.approx(links, abs=1e-9)
+        assert numeric_links == pytest.approx(links, abs=1e-9)
     far = offsets(len(closed.legs), 0.08)
     with np.errstate(invalid="ignore"):
-        wanted = one.joint_angles(far).reshape(-1, 3)
-    found = other.joint_angles(far).reshape(-1, 3)
-    is_unreached, is_not_found = (np.isnan(each.sum(axis=1)) for each in (wanted, found))
+        wanted = closed_legs.joint_angles(far).reshape(-1, 3)
+    numeric_angles = numeric_legs.joint_angles(far).reshape(-1, 3)
+    is_unreached, is_not_found = (np.isnan(each.sum(axis=1)) for each in (wanted, numeric_angles))
     # The numeric one finds no foot where there is none, and nearly all others.
     assert is_unreached.sum() > 3
     assert is_not_found[is_unreached].all()
     assert is_not_found[~is_unreached].mean() < 0.005
     # Where a leg is nearly straight or folded, its angles are less certain than its foot.
-    both = ~is_not_found
-    assert np.quantile(np.abs(found - wanted)[both], 0.99) < 1e-6
+    found_by_both = ~is_not_found
+    assert np.quantile(np.abs(numeric_angles - wanted)[found_by_both], 0.99) < 1e-6
 
 
 @pytest.mark.parametrize("name", FOLLOWING)
@@ -86,9 +88,9 @@ def test_feet_arrive_within_a_tenth_of_a_millimetre(name: str, within_m: float) 
     frames = np.repeat(legs.frames[:, None], len(places), axis=1)
     coarse = legs.in_pose_order(legs.solve(np.array((x, y)), z, frames))
 
-    for given, solved, step in zip(places, angles, coarse, strict=True):
-        assert np.abs(np.array(legs.foot_offsets(solved.tolist())) - given).max() < 1e-8
-        assert np.abs(np.array(legs.foot_offsets(step.tolist())) - given).max() < 1e-4
+    for place, solved, step in zip(places, angles, coarse, strict=True):
+        assert np.abs(np.array(legs.foot_offsets(solved.tolist())) - place).max() < 1e-8
+        assert np.abs(np.array(legs.foot_offsets(step.tolist())) - place).max() < 1e-4
 
 
 def test_a_chain_with_more_joints_than_it_needs_stays_near_where_it_stands() -> None:
@@ -115,9 +117,9 @@ def test_angles_do_not_depend_on_the_batch(model: RobotModel) -> None:
 
 
 def test_commands_of_steps_do_not_depend_on_the_batch_and_end_in_their_cells() -> None:
-    made = model_robot(quadruped_model(), "own")
-    gait, grid = resolve("trot", made.azimuths_deg), FootGrid(0.08)
-    motion = StepMotion(made, gait, StepLaw(gait, grid, None))
+    robot = model_robot(quadruped_model(), "own")
+    gait, grid = resolve("trot", robot.azimuths_deg), FootGrid(0.08)
+    motion = StepMotion(robot, gait, StepLaw(gait, grid, None))
     feet, plans = StepLaw(gait, grid, None).at_home(), []
     for number in range(40):
         plan = motion.plan(feet, Action(number % 2, 1 + number % 4))
@@ -133,24 +135,24 @@ def test_commands_of_steps_do_not_depend_on_the_batch_and_end_in_their_cells() -
 
 
 def test_commands_between_the_places_that_are_solved_are_within_a_third_of_a_milliradian() -> None:
-    made = model_robot(model_of(Robot()), "own")
-    gait, grid = resolve("tripod", made.azimuths_deg), FootGrid(0.04)
+    robot = model_robot(model_of(Robot()), "own")
+    gait, grid = resolve("tripod", robot.azimuths_deg), FootGrid(0.04)
     law = StepLaw(gait, grid, None)
     closed = StepMotion(Robot(), resolve("tripod", Robot().azimuths_deg), law)
-    own = StepMotion(
-        model_robot(made.model, "own", swing_s=0.2, shift_s=0.12, step_height_m=0.03), gait, law
+    numeric = StepMotion(
+        model_robot(robot.model, "own", swing_s=0.2, shift_s=0.12, step_height_m=0.03), gait, law
     )
-    plan = own.plan(law.at_home(), Action(0, 1))
+    plan = numeric.plan(law.at_home(), Action(0, 1))
     for action in (Action(1, 2), Action(0, 4), Action(1, 3)):
-        wanted, targets = (one.joint_targets([plan]) for one in (closed, own))
+        wanted, targets = (motion.joint_targets([plan]) for motion in (closed, numeric))
         assert np.abs(targets - wanted).max() < 3e-4
-        plan = own.plan(plan.end, action)
+        plan = numeric.plan(plan.end, action)
 
 
 def test_legs_of_two_joints_keep_the_height_and_say_that_they_do_not_follow() -> None:
     model = two_joint_model()
-    made = model_robot(model, "own")
-    legs = legs_of(made)
+    robot = model_robot(model, "own")
+    legs = legs_of(robot)
     assert isinstance(legs, ChainLegs)
     places = offsets(4, 0.03)
     kinematics = kinematics_of(model)
@@ -168,17 +170,19 @@ def test_legs_of_two_joints_keep_the_height_and_say_that_they_do_not_follow() ->
         for sign in (-1, 1):
             other = np.array(kinematics.foot_offsets((angles[0] + sign * change).tolist()))
             weights = np.array((1, 1, 8))
-            own, near = ((one - places[0]) * weights for one in (reached[0], other))
-            assert (near**2).sum() >= (own**2).sum() - 1e-9
+            missed_distance, near = (
+                (offset - places[0]) * weights for offset in (reached[0], other)
+            )
+            assert (near**2).sum() >= (missed_distance**2).sum() - 1e-9
 
 
 def test_reach_ends_where_the_links_end() -> None:
-    made = model_robot(quadruped_model(), "own")
-    gait: Gait = resolve("trot", made.azimuths_deg)
+    robot = model_robot(quadruped_model(), "own")
+    gait: Gait = resolve("trot", robot.azimuths_deg)
 
-    assert check_reach(made, gait, FootGrid(usual_grid_side_m(made, "trot"))) is None
+    assert check_reach(robot, gait, FootGrid(usual_grid_side_m(robot, "trot"))) is None
     with pytest.raises(Unreachable, match="leg 1 cannot reach cell 1"):
-        check_reach(made, gait, FootGrid(0.7))
+        check_reach(robot, gait, FootGrid(0.7))
 
 
 def test_a_foot_that_cannot_stand_with_the_others_is_named() -> None:

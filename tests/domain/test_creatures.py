@@ -35,11 +35,11 @@ def test_creatures_have_three_to_twelve_legs_odd_numbers_too() -> None:
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_bodies_are_symmetric_and_face_where_their_gait_goes(name: str) -> None:
-    made = CREATURES[name].robot
-    gait = resolve(CREATURES[name].gait, made.azimuths_deg)
-    homes = legs_of(made).under(gait).homes_m
+    robot = CREATURES[name].robot
+    gait = resolve(CREATURES[name].gait, robot.azimuths_deg)
+    homes = legs_of(robot).under(gait).homes_m
 
-    assert made.name == name
+    assert robot.name == name
     mirrored = {(round(-x, 9), round(y, 9)) for x, y in homes}
     assert mirrored == {(round(x, 9), round(y, 9)) for x, y in homes}
     assert gait.azimuths_deg[0] < 0 < gait.azimuths_deg[1]
@@ -57,11 +57,11 @@ def test_bodies_are_symmetric_and_face_where_their_gait_goes(name: str) -> None:
 def test_kits_have_their_dimensions_and_masses(
     name: str, mass_kg: float, coxa_height_m: float, links_m: tuple[float, ...]
 ) -> None:
-    made = CREATURES[name].robot
+    robot = CREATURES[name].robot
 
-    assert float(compile_model(made).body_mass.sum()) == pytest.approx(mass_kg)
-    assert made.body_height_m == coxa_height_m
-    assert (made.coxa_m, made.femur_m, made.tibia_m) == links_m
+    assert float(compile_model(robot).body_mass.sum()) == pytest.approx(mass_kg)
+    assert robot.body_height_m == coxa_height_m
+    assert (robot.coxa_m, robot.femur_m, robot.tibia_m) == links_m
     assert "Guessed" in CREATURES[name].description
 
 
@@ -94,10 +94,10 @@ def greedy_m(name: str, steps: int) -> float:
 @pytest.mark.parametrize("name", OTHERS)
 def test_every_creature_walks_by_the_law(name: str) -> None:
     """2 h / (G (1 + Σ w²)) a step, w the groups' shares of the feet; the first steps are longer."""
-    made = CREATURES[name].robot
-    gait = resolve(CREATURES[name].gait, made.azimuths_deg)
-    shares = np.array(gait.sizes) / len(made.legs)
+    robot = CREATURES[name].robot
+    gait = resolve(CREATURES[name].gait, robot.azimuths_deg)
+    shares = np.array(gait.sizes) / len(robot.legs)
     law_m = 0.04 / (len(shares) * (1 + float((shares**2).sum())))
 
-    assert check_reach(made, gait, FootGrid()) is None
+    assert check_reach(robot, gait, FootGrid()) is None
     assert greedy_m(name, 12) / 12 == pytest.approx(law_m, rel=0.15)

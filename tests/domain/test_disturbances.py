@@ -76,7 +76,7 @@ def test_every_declared_size_is_a_field() -> None:
     for kind in KINDS.values():
         names = {field.name for field in fields(kind)}
         assert kind.size is None or kind.size in names
-        assert {*kind.ranges, *(one.field for one in kind.ranges.values())} <= names
+        assert {*kind.ranges, *(spread.field for spread in kind.ranges.values())} <= names
 
 
 @pytest.mark.parametrize(
@@ -135,13 +135,13 @@ def test_legs_are_a_list_of_whole_numbers(legs: object) -> None:
         disturbance_from({"kind": "limp", "legs": legs})
 
 
-@pytest.mark.parametrize("given", [{}, {"kind": None}, {"kind": ["limp"]}, {"kind": "Limp"}])
-def test_a_kind_is_needed(given: dict[str, object]) -> None:
+@pytest.mark.parametrize("mapping", [{}, {"kind": None}, {"kind": ["limp"]}, {"kind": "Limp"}])
+def test_a_kind_is_needed(mapping: dict[str, object]) -> None:
     with pytest.raises(UnknownName, match="unknown kind of disturbance"):
-        disturbance_from(given)
+        disturbance_from(mapping)
 
 
-@pytest.mark.parametrize("one", [Limp(legs=(7,)), Stuck(leg=7, joint="coxa", angle_rad=0)])
-def test_a_leg_that_is_not_there_is_refused(one: Disturbance) -> None:
+@pytest.mark.parametrize("disturbance", [Limp(legs=(7,)), Stuck(leg=7, joint="coxa", angle_rad=0)])
+def test_a_leg_that_is_not_there_is_refused(disturbance: Disturbance) -> None:
     with pytest.raises(InvalidInput, match="there is no leg 7; this robot has legs 1 to 6"):
-        one.check(Robot())
+        disturbance.check(Robot())

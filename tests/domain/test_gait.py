@@ -298,8 +298,8 @@ def test_groups_are_lists_of_legs(groups: Any) -> None:
 
 @pytest.mark.parametrize("groups", ["tripod", [[1, 3, 5], [2, 4, 6]]])
 def test_groups_round_trip_through_json(groups: Any) -> None:
-    given = {"right_leg": 1, "left_leg": 2, "groups": groups}
-    read = read_gait(given)
+    written = {"right_leg": 1, "left_leg": 2, "groups": groups}
+    read = read_gait(written)
 
-    assert json.loads(json.dumps(gait_as_json(read))) == given
+    assert json.loads(json.dumps(gait_as_json(read))) == written
     assert read_gait(json.loads(json.dumps(gait_as_json(read)))) == read

@@ -21,8 +21,8 @@ from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.types import FloatArray
 
 
-def kinematics(made: Robot, gait: str = "left-right-origin") -> FootKinematics:
-    return legs_of(made).under(resolve(gait, made.azimuths_deg))
+def kinematics(body: Robot, gait: str = "left-right-origin") -> FootKinematics:
+    return legs_of(body).under(resolve(gait, body.azimuths_deg))
 
 
 def offsets(legs: int) -> st.SearchStrategy[FloatArray]:
@@ -41,20 +41,20 @@ def test_forward_kinematics_inverts_inverse_kinematics(gait: str, places: FloatA
 
 
 def test_links_lead_from_the_mounts_by_their_lengths_to_the_feet() -> None:
-    made = PRESETS["ant"]
-    legs = legs_of(made)
-    gait = resolve("tripod", made.azimuths_deg)
+    ant = PRESETS["ant"]
+    legs = legs_of(ant)
+    gait = resolve("tripod", ant.azimuths_deg)
     angles = legs.under(gait).joint_angles(np.zeros((6, 3)))
     feet = legs.feet_in_body(angles[None])[0]
 
     for leg, (mount, places) in enumerate(
-        zip(made.legs, legs.links_in_body(angles.tolist()), strict=True)
+        zip(ant.legs, legs.links_in_body(angles.tolist()), strict=True)
     ):
         x, y, z = places[0]
         assert math.hypot(x, y) == pytest.approx(mount.radius_m)
         assert z == mount.z_m
         lengths_m = np.linalg.norm(np.diff(places, axis=0), axis=1)
-        wanted = [made.of_legs(name)[leg] for name in ("coxa_m", "femur_m", "tibia_m")]
+        wanted = [ant.of_legs(name)[leg] for name in ("coxa_m", "femur_m", "tibia_m")]
         assert lengths_m == pytest.approx(wanted)
         assert places[-1] == pytest.approx(feet[leg], abs=1e-12)
 
@@ -109,15 +109,15 @@ def test_joint_angles_out_of_reach_are_nan() -> None:
 @pytest.mark.parametrize("gait", PAPER_GAITS)
 @pytest.mark.parametrize("legs", [4, 6, 8, 10])
 def test_the_default_grid_is_within_reach_of_four_to_ten_legs(gait: str, legs: int) -> None:
-    made = robot({"n_legs": legs})
-    resolved = resolve(gait, made.azimuths_deg)
-    check_reach(made, resolved, FootGrid())
+    body = robot({"n_legs": legs})
+    resolved = resolve(gait, body.azimuths_deg)
+    check_reach(body, resolved, FootGrid())
 
     # For every possible offset all joint angles stay within their limits.
     places = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (0, 1)])
     drift = len(resolved.groups) - 1
-    scaled = places * (0.02, drift * 0.02, made.step_height_m)
-    angles = legs_of(made).under(resolved).joint_angles(np.repeat(scaled[:, None], legs, axis=1))
+    scaled = places * (0.02, drift * 0.02, body.step_height_m)
+    angles = legs_of(body).under(resolved).joint_angles(np.repeat(scaled[:, None], legs, axis=1))
     for joint, (low, high) in enumerate(JOINT_LIMITS_RAD.values()):
         assert (angles[..., joint::3] > low).all()
         assert (angles[..., joint::3] < high).all()
@@ -136,22 +136,22 @@ def test_the_default_grid_is_within_reach_of_four_to_ten_legs(gait: str, legs: i
 def test_a_grid_that_a_leg_cannot_reach_names_leg_and_cell(
     written: dict[str, Any], side_m: float, message: str
 ) -> None:
-    made = robot(written)
+    body = robot(written)
     with pytest.raises(Unreachable, match=message + r".*; choose a smaller grid_side_m than"):
-        check_reach(made, resolve("left-right-origin", made.azimuths_deg), FootGrid(side_m=side_m))
+        check_reach(body, resolve("left-right-origin", body.azimuths_deg), FootGrid(side_m=side_m))
 
 
 def test_a_joint_beyond_its_limit_is_named() -> None:
-    made = robot({"home_radius_m": 0.2, "body_height_m": 0.06})
+    body = robot({"home_radius_m": 0.2, "body_height_m": 0.06})
     with pytest.raises(Unreachable, match="its tibia would turn to -163°, beyond its limit"):
-        check_reach(made, resolve("left-right-origin", made.azimuths_deg), FootGrid())
+        check_reach(body, resolve("left-right-origin", body.azimuths_deg), FootGrid())
 
 
 def test_positions_between_two_cells_must_be_within_reach_too() -> None:
     """Between front left and back left the foot of a left leg passes closest to its coxa joint."""
-    made = robot({"n_legs": 4, "step_height_m": 0.07})
+    body = robot({"n_legs": 4, "step_height_m": 0.07})
     with pytest.raises(Unreachable, match="on the way there: its femur would turn to"):
-        check_reach(made, resolve("front-back-origin", made.azimuths_deg), FootGrid(side_m=0.08))
+        check_reach(body, resolve("front-back-origin", body.azimuths_deg), FootGrid(side_m=0.08))
 
 
 @pytest.mark.parametrize(
@@ -167,20 +167,20 @@ def test_where_feet_could_drift_out_of_reach_the_reach_is_returned(
     written: dict[str, Any], gait: str, side_m: float
 ) -> None:
     """It is at least the grid, and within it every leg follows every step."""
-    made = robot(written)
-    resolved, grid = resolve(gait, made.azimuths_deg), FootGrid(side_m=side_m)
-    reach = check_reach(made, resolved, grid)
+    body = robot(written)
+    resolved, grid = resolve(gait, body.azimuths_deg), FootGrid(side_m=side_m)
+    reach = check_reach(body, resolved, grid)
 
     assert reach is not None
     assert max(reach.back_m) <= -side_m / 2
     assert min(reach.ahead_m) >= side_m / 2
     law, rng = StepLaw(resolved, grid, reach), np.random.default_rng(0)
-    motion, feet, plans = StepMotion(made, resolved, law), law.at_home(), []
+    motion, feet, plans = StepMotion(body, resolved, law), law.at_home(), []
     for _ in range(300):
         legal = law.possible(feet, legal_actions(feet.commanded, len(grid)))
         plans.append(motion.plan(feet, legal[int(rng.integers(len(legal)))]))
         feet = plans[-1].end
         assert feet.mean_m(resolved.sizes) == pytest.approx(0, abs=1e-12)
     targets = motion.joint_targets(plans)
-    low, high = legs_of(made).limits_rad
+    low, high = legs_of(body).limits_rad
     assert ((low <= targets) & (targets <= high)).all()

@@ -17,10 +17,10 @@ FRONT_LEFT, FRONT_RIGHT, BACK_LEFT = 1, 2, 3
 every_gait = pytest.mark.parametrize("gait", PAPER_GAITS)
 
 
-def motion_of(gait: str, made: Robot | None = None) -> StepMotion:
-    made = made or Robot()
-    resolved = resolve(gait, made.azimuths_deg)
-    return StepMotion(made, resolved, StepLaw(resolved, FootGrid(), None))
+def motion_of(gait: str, robot: Robot | None = None) -> StepMotion:
+    robot = robot or Robot()
+    resolved = resolve(gait, robot.azimuths_deg)
+    return StepMotion(robot, resolved, StepLaw(resolved, FootGrid(), None))
 
 
 def third_step(motion: StepMotion) -> StepPlan:
@@ -127,15 +127,15 @@ def test_commands_start_and_end_each_phase_at_rest() -> None:
 def test_wanted_substeps_have_the_commands_of_all_to_the_last_bit() -> None:
     robot, whole = Robot(shift_s=0.128), motion_of("left-right-origin", Robot(shift_s=0.128))
     gait, wanted = resolve("left-right-origin", robot.azimuths_deg), recorded_substeps(robot)
-    part = StepMotion(robot, gait, StepLaw(gait, FootGrid(), None), wanted)
+    recorded = StepMotion(robot, gait, StepLaw(gait, FootGrid(), None), wanted)
     plans = [
         whole.plan(Feet.at_home(3), Action(pair, cell)) for pair in (0, 1, 2) for cell in (1, 4)
     ]
 
     for plan in plans:
-        one, all_of_it = part.joint_targets([plan]), whole.joint_targets([plan])
-        assert np.array_equal(one, all_of_it[:, wanted])
-    assert np.array_equal(part.joint_targets(plans), whole.joint_targets(plans)[:, wanted])
+        recorded_targets, all_of_it = recorded.joint_targets([plan]), whole.joint_targets([plan])
+        assert np.array_equal(recorded_targets, all_of_it[:, wanted])
+    assert np.array_equal(recorded.joint_targets(plans), whole.joint_targets(plans)[:, wanted])
 
 
 def test_ease_runs_from_0_to_1() -> None:
@@ -149,9 +149,9 @@ def test_recorded_substeps_are_20_ms_apart_and_include_the_last() -> None:
 
 def test_groups_of_any_sizes_swing_while_the_others_stand() -> None:
     """Also in one batch; a foot on the axis does not move sideways."""
-    made = Robot()
-    gait = resolve(GaitSpec(1, 3, groups=((2, 1, 3), (4, 6), (5,))), made.azimuths_deg)
-    motion = StepMotion(made, gait, StepLaw(gait, FootGrid(), None))
+    robot = Robot()
+    gait = resolve(GaitSpec(1, 3, groups=((2, 1, 3), (4, 6), (5,))), robot.azimuths_deg)
+    motion = StepMotion(robot, gait, StepLaw(gait, FootGrid(), None))
     plans = [motion.plan(Feet.at_home(3), Action(group, FRONT_LEFT)) for group in range(3)]
     together = motion.joint_targets(plans)
 

@@ -11,7 +11,7 @@ WORDS = ["no", "yes", "on", "~", "null", "1", "0.5", "1e3", "2026-01-01", "", " 
 TEXT = st.text(st.characters(codec="utf-8", exclude_categories=["Cc", "Cs"]), max_size=20)
 PLAIN = st.recursive(
     st.none() | st.booleans() | st.integers(-(10**9), 10**9) | TEXT | st.sampled_from(WORDS),
-    lambda one: st.lists(one, max_size=3) | st.dictionaries(TEXT, one, max_size=3),
+    lambda values: st.lists(values, max_size=3) | st.dictionaries(TEXT, values, max_size=3),
     max_leaves=8,
 )
 

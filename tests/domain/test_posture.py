@@ -39,8 +39,8 @@ def test_many_poses_are_told_at_once() -> None:
     cases = [(z, tilt) for z in (0.02, 0.03, 0.06, 0.1) for tilt in (0.0, 30.0, 45.0, 90.0, 180.0)]
     poses = [pose(z, tilt_deg) for z, tilt_deg in cases]
     for ground_m in (0.0, 0.02):
-        told = have_fallen(Robot(), np.array(poses)[:, TILT], ground_m)
-        assert told.tolist() == [has_fallen(Robot(), one, ground_m) for one in poses]
+        fallen = have_fallen(Robot(), np.array(poses)[:, TILT], ground_m)
+        assert fallen.tolist() == [has_fallen(Robot(), row, ground_m) for row in poses]
 
 
 @pytest.mark.parametrize(("z", "fallen"), [(0.16, True), (0.18, False)])
@@ -51,8 +51,8 @@ def test_an_elongated_torso_lies_by_its_lowest_corner(z: float, fallen: bool) ->
 
     assert has_fallen(long, on_its_end, ground_m=0.01) == fallen
     assert has_fallen(long, on_its_side, ground_m=0.01) == fallen
-    told = have_fallen(long, np.array([on_its_end, on_its_side])[:, TILT], ground_m=0.01)
-    assert told.tolist() == [fallen, fallen]
+    flags = have_fallen(long, np.array([on_its_end, on_its_side])[:, TILT], ground_m=0.01)
+    assert flags.tolist() == [fallen, fallen]
 
 
 def test_bumps_are_ground_too() -> None:

@@ -25,13 +25,13 @@ LANES = (LaneConfig(agent="greedy"),)
 def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
     gait: str | GaitSpec,
 ) -> None:
-    made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
-    shown = json.loads(json.dumps(to_json(training_config(gait=gait, robot=made))))
+    body = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
+    shown = json.loads(json.dumps(to_json(training_config(gait=gait, robot=body))))
 
     assert read_gait(shown.pop("gait")) == gait
-    assert robot(shown.pop("robot")) == made
+    assert robot(shown.pop("robot")) == body
     assert shown.pop("disturbances") == []
-    assert training_config(gait=gait, robot=made, **shown) == training_config(gait=gait, robot=made)
+    assert training_config(gait=gait, robot=body, **shown) == training_config(gait=gait, robot=body)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_a_records_docstring_describes_it_and_its_fields() -> None:
 
     described = TypeAdapter(Pace).json_schema()
     assert described["description"] == "How fast it walks."
-    members = {name: one.get("description") for name, one in described["properties"].items()}
+    members = {name: field.get("description") for name, field in described["properties"].items()}
     assert members["speed_m_s"] == "distance by time; null without a step."
     assert members["steps"] is None
     assert "random follows from this number" in members["seed"], "a setting's own help goes first"

@@ -40,8 +40,8 @@ def test_the_default_robot_has_the_specified_parameters() -> None:
     default = asdict(Robot())
 
     assert {name: default[name] for name in figures} == figures
-    others = {"name", "legs", "id", "document", "torso_length_m", "torso_width_m"}
-    assert set(default) == {*figures, *others}
+    identity_fields = {"name", "legs", "id", "document", "torso_length_m", "torso_width_m"}
+    assert set(default) == {*figures, *identity_fields}
     assert list(Robot().azimuths_deg) == [0, 60, 120, 180, 240, 300]
     assert (Robot().swing_substeps, Robot().shift_substeps) == (50, 30)
     assert Robot().step_s == pytest.approx(0.32)
@@ -49,8 +49,8 @@ def test_the_default_robot_has_the_specified_parameters() -> None:
 
 def test_the_presets_of_the_paper_differ_in_servos_and_friction_only() -> None:
     def differences(name: str) -> dict[str, Any]:
-        own, stiff = asdict(PRESETS[name]), asdict(Robot())
-        return {k: v for k, v in own.items() if v != stiff[k] and k != "name"}
+        fields_of_preset, stiff = asdict(PRESETS[name]), asdict(Robot())
+        return {k: v for k, v in fields_of_preset.items() if v != stiff[k] and k != "name"}
 
     assert list(PRESETS)[:3] == ["stiff", "compliant", "slippery"]
     assert differences("stiff") == {}
@@ -103,10 +103,10 @@ def test_legs_can_be_listed_one_by_one() -> None:
     ],
 )
 def test_a_robot_round_trips_through_its_mapping(written: str | Mapping[str, Any]) -> None:
-    made = robot(written)
+    body = robot(written)
 
-    assert robot(as_mapping(made)) == made
-    assert as_mapping(robot(as_mapping(made))) == as_mapping(made)
+    assert robot(as_mapping(body)) == body
+    assert as_mapping(robot(as_mapping(body))) == as_mapping(body)
 
 
 def test_a_presets_mapping_is_its_name_alone() -> None:
@@ -175,7 +175,7 @@ def test_a_ring_may_have_an_odd_number_of_legs() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "reason"),
+    ("values", "reason"),
     [
         ({"femur_m": "x"}, "robot.femur_m must be a number, not 'x'"),
         ({"femur_m": True}, "robot.femur_m must be a number, not True"),
@@ -183,9 +183,9 @@ def test_a_ring_may_have_an_odd_number_of_legs() -> None:
         ({"legs": 3}, "robot.legs must be a tuple of LegMount, not 3"),
     ],
 )
-def test_a_robot_is_built_of_numbers(given: Any, reason: str) -> None:
+def test_a_robot_is_built_of_numbers(values: Any, reason: str) -> None:
     with pytest.raises(InvalidInput, match=reason):
-        Robot(**given)
+        Robot(**values)
 
 
 def test_a_leg_may_be_placed_by_x_and_y_and_have_numbers_of_its_own() -> None:
@@ -194,19 +194,19 @@ def test_a_leg_may_be_placed_by_x_and_y_and_have_numbers_of_its_own() -> None:
         {"x_m": -0.05, "y_m": 0.1, "z_m": 0.01, "servo_torque_nm": 3},
         {"azimuth_deg": -90, "coxa_kg": 0.1},
     ]
-    made = robot({"legs": legs, "tibia_m": 0.14})
+    body = robot({"legs": legs, "tibia_m": 0.14})
 
-    assert made.legs[0].radius_m == pytest.approx(math.hypot(0.05, 0.1))
-    assert made.legs[0].azimuth_deg == pytest.approx(math.degrees(math.atan2(0.1, 0.05)))
-    assert made.legs[0].direction_deg == 30
-    assert made.legs[2].direction_deg == -90
-    assert made.of_legs("femur_m") == (0.1, 0.08, 0.08)
-    assert made.of_legs("tibia_m") == (0.14, 0.14, 0.14)
-    assert made.of_legs("servo_torque_nm") == (1.5, 3, 1.5)
-    assert made.feet_out_m[0] == 0.12
-    assert made.feet_out_m[2] == pytest.approx(0.25 - 0.1)
-    assert made.homes_m[2] == pytest.approx((0, -0.25))
-    assert robot(as_mapping(made)) == made
+    assert body.legs[0].radius_m == pytest.approx(math.hypot(0.05, 0.1))
+    assert body.legs[0].azimuth_deg == pytest.approx(math.degrees(math.atan2(0.1, 0.05)))
+    assert body.legs[0].direction_deg == 30
+    assert body.legs[2].direction_deg == -90
+    assert body.of_legs("femur_m") == (0.1, 0.08, 0.08)
+    assert body.of_legs("tibia_m") == (0.14, 0.14, 0.14)
+    assert body.of_legs("servo_torque_nm") == (1.5, 3, 1.5)
+    assert body.feet_out_m[0] == 0.12
+    assert body.feet_out_m[2] == pytest.approx(0.25 - 0.1)
+    assert body.homes_m[2] == pytest.approx((0, -0.25))
+    assert robot(as_mapping(body)) == body
 
 
 @pytest.mark.parametrize(

@@ -39,9 +39,9 @@ def stored() -> Iterator[Robot]:
 @pytest.mark.parametrize("name", CREATURES)
 def test_a_document_holds_the_robot_to_the_last_bit(name: str) -> None:
     data = document_of(PRESETS[name])
-    made = read_document(data)
-    assert made == PRESETS[name]
-    assert made.id == robot_documents.id_of(data) == robot_documents.id_of(document_of(made))
+    loaded = read_document(data)
+    assert loaded == PRESETS[name]
+    assert loaded.id == robot_documents.id_of(data) == robot_documents.id_of(document_of(loaded))
     LIBRARY.forget([robot_documents.id_of(data)])
 
 
@@ -80,7 +80,7 @@ def test_a_name_that_was_given_elsewhere_is_used_unless_it_has_one_here(stored: 
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("written", "reason"),
     [
         ({"id": "0" * 16, "name": "Rex"}, "no stored robot '0000000000000000' (Rex); import its"),
         ({"id": "xyz"}, "16 hexadecimal digits"),
@@ -90,9 +90,9 @@ def test_a_name_that_was_given_elsewhere_is_used_unless_it_has_one_here(stored: 
         ({"id": "../../../../etc"}, "16 hexadecimal digits"),
     ],
 )
-def test_what_is_no_stored_robot_is_refused(given: dict[str, Any], told: str) -> None:
-    with pytest.raises(InvalidInput, match=re.escape(told)):
-        robot(given)
+def test_what_is_no_stored_robot_is_refused(written: dict[str, Any], reason: str) -> None:
+    with pytest.raises(InvalidInput, match=re.escape(reason)):
+        robot(written)
 
 
 @pytest.mark.parametrize(
@@ -123,10 +123,10 @@ def test_a_robot_out_of_its_limits_is_refused() -> None:
 
 
 def test_a_robot_is_written_and_pickled_where_its_document_is_not_known_any_more() -> None:
-    made = read_document(document_of(robot(BODY)), "Rex")
+    loaded = read_document(document_of(robot(BODY)), "Rex")
     changed = robot({"id": ID, "name": "Rex", "friction": 0.5})
     LIBRARY.forget([ID])
-    assert as_mapping(made) == {"id": ID, "name": "Rex"}
+    assert as_mapping(loaded) == {"id": ID, "name": "Rex"}
     assert as_mapping(changed) == {"id": ID, "name": "Rex", "friction": 0.5}
     assert pickle.loads(pickle.dumps(changed)) == changed
     LIBRARY.forget([ID])
@@ -145,8 +145,8 @@ def test_an_id_alone_is_the_robot_too(stored: Robot) -> None:
         robot("0" * 16)
 
 
-@pytest.mark.parametrize("made", [*PRESETS.values(), robot(BODY)], ids=lambda one: one.name)
-def test_a_robot_by_value_needs_no_other(made: Robot) -> None:
-    value = by_value(made)
+@pytest.mark.parametrize("preset", [*PRESETS.values(), robot(BODY)], ids=lambda preset: preset.name)
+def test_a_robot_by_value_needs_no_other(preset: Robot) -> None:
+    value = by_value(preset)
     assert value is not None
-    assert robot(value) == made
+    assert robot(value) == preset

@@ -43,10 +43,10 @@ class Config:
 
 
 def test_declared_parameters_are_settings() -> None:
-    found = declared_parameters(Agent)
-    assert list(found) == ["rate", "count"]
-    assert (found["rate"].default, found["count"].default) == (0.3, REQUIRED)
-    assert found["rate"].about is ABOUT
+    parameters = declared_parameters(Agent)
+    assert list(parameters) == ["rate", "count"]
+    assert (parameters["rate"].default, parameters["count"].default) == (0.3, REQUIRED)
+    assert parameters["rate"].about is ABOUT
 
 
 def test_settings_are_found_in_dataclasses_and_functions() -> None:
@@ -55,8 +55,8 @@ def test_settings_are_found_in_dataclasses_and_functions() -> None:
 
 
 class Extended(Agent):
-    def __init__(self, *args: Any, width: Annotated[int, Ge(1), ABOUT] = 3, **others: Any) -> None:
-        super().__init__(*args, **others)
+    def __init__(self, *args: Any, width: Annotated[int, Ge(1), ABOUT] = 3, **options: Any) -> None:
+        super().__init__(*args, **options)
         self.width = width
 
 

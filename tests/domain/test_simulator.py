@@ -22,11 +22,11 @@ Build = Callable[..., Simulator[Any]]
 @pytest.fixture(params=[KinematicSimulator, MujocoSimulator], ids=["kinematic", "mujoco"])
 def build(request: pytest.FixtureRequest) -> Build:
     def build(
-        gait: str = "left-right-origin", made: Robot | None = None, divisions: int = 2
+        gait: str = "left-right-origin", robot: Robot | None = None, divisions: int = 2
     ) -> Simulator[Any]:
-        made = made or Robot()
+        robot = robot or Robot()
         simulator: Simulator[Any] = request.param(
-            made, resolve(gait, made.azimuths_deg), FootGrid(divisions=divisions)
+            robot, resolve(gait, robot.azimuths_deg), FootGrid(divisions=divisions)
         )
         return simulator
 
@@ -109,21 +109,25 @@ def test_the_reward_is_the_bodys_displacement(simulator: Simulator[Any]) -> None
 
 
 def test_steps_are_deterministic_to_the_last_bit(build: Build) -> None:
-    one, other = build(), build()
-    states = walk(one, one.rest(), 12)
+    first, second = build(), build()
+    states = walk(first, first.rest(), 12)
 
-    assert [bits(one, s) for s in states] == [bits(other, s) for s in walk(other, other.rest(), 12)]
-    assert [bits(one, s) for s in states] == [bits(one, s) for s in walk(one, one.rest(), 12)]
+    assert [bits(first, s) for s in states] == [
+        bits(second, s) for s in walk(second, second.rest(), 12)
+    ]
+    assert [bits(first, s) for s in states] == [
+        bits(first, s) for s in walk(first, first.rest(), 12)
+    ]
 
 
 @pytest.mark.test
 @pytest.mark.parametrize("divisions", [2, 3])
 def test_expand_equals_step_to_the_last_bit(build: Build, divisions: int) -> None:
     simulator = build("left-right-vertical", divisions=divisions)
-    here = [simulator.rest(), *walk(simulator, simulator.rest(), 4)]
+    states = [simulator.rest(), *walk(simulator, simulator.rest(), 4)]
     futures = [
         (state, action)
-        for state in here
+        for state in states
         for action in legal_actions(state.commanded, len(simulator.grid))
     ]
     # Batches that grow and shrink, to detect state left behind by an earlier call.
@@ -190,10 +194,12 @@ def test_a_loaded_state_is_identical_and_continues_identically(build: Build) -> 
 
 
 @pytest.mark.parametrize(
-    ("made", "frames"), [(Robot(), 16), (Robot(shift_s=0.128), 17), (Robot(dt_s=0.002), 16)]
+    ("robot", "frames"), [(Robot(), 16), (Robot(shift_s=0.128), 17), (Robot(dt_s=0.002), 16)]
 )
-def test_a_recorded_step_has_fifty_poses_per_second(build: Build, made: Robot, frames: int) -> None:
-    simulator = build(made=made)
+def test_a_recorded_step_has_fifty_poses_per_second(
+    build: Build, robot: Robot, frames: int
+) -> None:
+    simulator = build(robot=robot)
     before = simulator.rest()
     step = simulator.step(before, Action(1, 2), record=True)
     assert step.motion is not None
@@ -203,15 +209,15 @@ def test_a_recorded_step_has_fifty_poses_per_second(build: Build, made: Robot, f
     assert time_s.shape == (frames,)
     assert qpos.shape == (frames, 7 + 18)
     assert time_s[:16] == pytest.approx(np.arange(1, 17) * 0.02)
-    assert time_s[-1] == pytest.approx(made.step_s)
+    assert time_s[-1] == pytest.approx(robot.step_s)
     assert (qpos[-1] == simulator.pose(step.state).astype(np.float32)).all()
     assert np.linalg.norm(qpos[:, 3:7], axis=1) == pytest.approx(1)
     assert np.abs(np.diff(qpos, axis=0)).max() < 0.35  # no jumps
 
 
 def test_recording_does_not_change_the_step(simulator: Simulator[Any]) -> None:
-    here = walk(simulator, simulator.rest(), 2)[-1]
-    recorded, unrecorded = (simulator.step(here, Action(0, 3), record) for record in (True, False))
+    state = walk(simulator, simulator.rest(), 2)[-1]
+    recorded, unrecorded = (simulator.step(state, Action(0, 3), record) for record in (True, False))
 
     assert unrecorded.motion is None
     assert bits(simulator, recorded.state) == bits(simulator, unrecorded.state)

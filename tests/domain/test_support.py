@@ -30,7 +30,7 @@ def test_the_margin_is_the_distance_to_the_hulls_edge(
 
 
 @pytest.mark.parametrize(
-    ("made", "gait", "margin"),
+    ("body", "gait", "margin"),
     [
         (Robot(), "left-right-origin", 0.125),
         (Robot(), "left-right-vertical", 0.0),
@@ -45,15 +45,15 @@ def test_the_margin_is_the_distance_to_the_hulls_edge(
     ],
 )
 def test_the_least_margin_tells_which_bodies_tip(
-    made: Robot, gait: str | GaitSpec, margin: float
+    body: Robot, gait: str | GaitSpec, margin: float
 ) -> None:
-    resolved = resolve(gait, made.azimuths_deg)
-    least = Support(made, resolved).least_margin_m(resolved.groups)
+    resolved = resolve(gait, body.azimuths_deg)
+    least = Support(body, resolved).least_margin_m(resolved.groups)
     assert least == pytest.approx(margin, abs=1e-4)
 
 
 @pytest.mark.parametrize(
-    ("made", "groups"),
+    ("body", "groups"),
     [
         (Robot(), ((1, 3, 5), (2, 4, 6))),
         (robot({"n_legs": 4}), ((1, 3), (2, 4))),
@@ -62,8 +62,8 @@ def test_the_least_margin_tells_which_bodies_tip(
         (CREATURES["centipede"].robot, ((1, 3, 5, 7, 9, 11), (2, 4, 6, 8, 10, 12))),
     ],
 )
-def test_the_fewest_groups_that_stand_are_found(made: Robot, groups: tuple[Group, ...]) -> None:
-    support = Support(made, resolve("one-by-one", made.azimuths_deg))
+def test_the_fewest_groups_that_stand_are_found(body: Robot, groups: tuple[Group, ...]) -> None:
+    support = Support(body, resolve("one-by-one", body.azimuths_deg))
     assert support.steadiest_groups() == groups
 
 

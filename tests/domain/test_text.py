@@ -32,7 +32,7 @@ def test_an_invisible_character_is_refused_and_named(mark: str) -> None:
 def test_all_other_characters_are_allowed_in_names(name: str) -> None:
     assert check_name(name) == name
     assert visible(name) == name
-    assert all(unicodedata.category(one) != "Cf" for one in name)
+    assert all(unicodedata.category(character) != "Cf" for character in name)
 
 
 def test_a_long_name_is_refused() -> None:

@@ -15,9 +15,9 @@ def built(share: float, seed: int = 0, design: Robot | None = None) -> Robot:
 
 
 def test_built_robot_differs_by_up_to_the_share() -> None:
-    design, one = Robot(), built(0.03)
-    deviations = [getattr(one, name) / getattr(design, name) - 1 for name in VARIED]
-    angles = [a - b for a, b in zip(one.azimuths_deg, design.azimuths_deg, strict=True)]
+    design, built_robot = Robot(), built(0.03)
+    deviations = [getattr(built_robot, name) / getattr(design, name) - 1 for name in VARIED]
+    angles = [a - b for a, b in zip(built_robot.azimuths_deg, design.azimuths_deg, strict=True)]
 
     assert all(0 < abs(deviation) <= 0.03 for deviation in deviations)
     assert all(0 < abs(angle) <= 0.03 * 60 for angle in angles)  # legs stand 60° apart
@@ -25,8 +25,8 @@ def test_built_robot_differs_by_up_to_the_share() -> None:
 
 
 def test_what_is_commanded_is_as_designed() -> None:
-    design, one = asdict(Robot()), asdict(built(0.2))
-    same = {name for name, value in one.items() if value == design[name]}
+    design, built_fields = asdict(Robot()), asdict(built(0.2))
+    same = {name for name, value in built_fields.items() if value == design[name]}
 
     assert same == set(design) - {*VARIED, "legs"}
 
@@ -48,11 +48,11 @@ def test_no_tolerance_is_the_robot_itself() -> None:
 def test_values_stay_in_their_ranges() -> None:
     design = robot({"friction": 5.0, "foot_kg": 0.001, "servo_kp": 1000.0})
     for seed in range(20):
-        one = built(MAX_TOLERANCE, seed, design)
+        built_robot = built(MAX_TOLERANCE, seed, design)
         for name in VARIED:
             low, high = RANGES[name]
-            assert low <= getattr(one, name) <= high
-        as_mapping(one)  # is still a preset and what differs from it
+            assert low <= getattr(built_robot, name) <= high
+        as_mapping(built_robot)  # is still a preset and what differs from it
 
 
 @pytest.mark.parametrize("share", [-0.01, 0.21, float("nan")])

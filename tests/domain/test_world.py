@@ -60,14 +60,18 @@ HELD = {"leg": 2, "joint": "femur", "angle_rad": -0.9}
 
 def test_the_conditions_of_a_step_hold_from_the_start() -> None:
     steep, limp = Slope(degrees=8, until_step=30), Limp(legs=(1, 4), at_step=10)
-    made = World((steep, limp))
+    disturbed = World((steep, limp))
 
-    assert made.change_steps == (10, 30)
-    assert made.as_of(0) == made.as_of(9) == World((Slope(degrees=8),))
-    both = {Slope(degrees=8), Limp(legs=(1,)), Limp(legs=(4,))}
-    assert set(made.as_of(10).disturbances) == set(made.as_of(29).disturbances) == both
-    assert set(made.as_of(30).disturbances) == {Limp(legs=(1,)), Limp(legs=(4,))}
-    assert made.as_of(10).as_of(99) == made.as_of(10)
+    assert disturbed.change_steps == (10, 30)
+    assert disturbed.as_of(0) == disturbed.as_of(9) == World((Slope(degrees=8),))
+    slope_and_limp = {Slope(degrees=8), Limp(legs=(1,)), Limp(legs=(4,))}
+    assert (
+        set(disturbed.as_of(10).disturbances)
+        == set(disturbed.as_of(29).disturbances)
+        == slope_and_limp
+    )
+    assert set(disturbed.as_of(30).disturbances) == {Limp(legs=(1,)), Limp(legs=(4,))}
+    assert disturbed.as_of(10).as_of(99) == disturbed.as_of(10)
 
 
 def test_equal_conditions_are_equal_however_they_came_about() -> None:
@@ -79,7 +83,7 @@ def test_equal_conditions_are_equal_however_they_came_about() -> None:
 
 
 def test_a_later_one_replaces_an_earlier_one_of_the_same_thing() -> None:
-    made = World(
+    disturbed = World(
         (
             Limp(legs=(1, 4)),
             Weak(legs=(4,), torque_share=0.5, at_step=5),
@@ -89,36 +93,36 @@ def test_a_later_one_replaces_an_earlier_one_of_the_same_thing() -> None:
         )
     )
 
-    assert set(made.as_of(5).disturbances) == {
+    assert set(disturbed.as_of(5).disturbances) == {
         Limp(legs=(1,)),
         Weak(legs=(4,), torque_share=0.5),
         Friction(value=0.5),
     }
-    assert Friction(value=0.1) in made.as_of(8).disturbances
-    assert made.as_of(10) == World((Friction(value=0.1),))
+    assert Friction(value=0.1) in disturbed.as_of(8).disturbances
+    assert disturbed.as_of(10) == World((Friction(value=0.1),))
 
 
 def test_a_repaired_leg_has_no_stuck_joint() -> None:
-    made = World((Stuck(**HELD), Repair(legs=(2,), at_step=1)))  # type: ignore[arg-type]
+    disturbed = World((Stuck(**HELD), Repair(legs=(2,), at_step=1)))  # type: ignore[arg-type]
 
-    assert made.as_of(0) == World((Stuck(**HELD),))  # type: ignore[arg-type]
-    assert made.as_of(1) == UNDISTURBED
+    assert disturbed.as_of(0) == World((Stuck(**HELD),))  # type: ignore[arg-type]
+    assert disturbed.as_of(1) == UNDISTURBED
 
 
 def test_a_push_is_in_one_step_and_not_among_the_conditions() -> None:
-    made = World((Push(impulse_ns=1, at_step=3), Push(impulse_ns=2, at_step=3)))
+    disturbed = World((Push(impulse_ns=1, at_step=3), Push(impulse_ns=2, at_step=3)))
     one_by_one = UNDISTURBED
-    for push in made.disturbances:
+    for push in disturbed.disturbances:
         one_by_one = one_by_one.then(push)
-    assert one_by_one == made
+    assert one_by_one == disturbed
 
-    assert made.as_of(3) == UNDISTURBED
-    assert [push.impulse_ns for push in made.pushes_at(3)] == [1, 2]
-    assert made.pushes_at(2) == made.pushes_at(4) == ()
+    assert disturbed.as_of(3) == UNDISTURBED
+    assert [push.impulse_ns for push in disturbed.pushes_at(3)] == [1, 2]
+    assert disturbed.pushes_at(2) == disturbed.pushes_at(4) == ()
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("earlier", "later"),
     [
         (Slope(degrees=1), Slope(degrees=2)),
         (Limp(legs=(1, 2)), Lost(legs=(2, 3))),
@@ -129,8 +133,8 @@ def test_a_push_is_in_one_step_and_not_among_the_conditions() -> None:
         (Patch(from_m=0, to_m=1, friction=0.1), Rough(amplitude_m=0.01, at_step=5)),
     ],
 )
-def test_contradictions_are_refused(one: object, other: object) -> None:
-    for pair in ((one, other), (other, one)):
+def test_contradictions_are_refused(earlier: object, later: object) -> None:
+    for pair in ((earlier, later), (later, earlier)):
         with pytest.raises(InvalidInput, match="contradict"):
             World(pair)  # type: ignore[arg-type]
 
@@ -151,15 +155,15 @@ def test_power_and_joints_of_a_leg_are_different_things() -> None:
         assert World((stuck, power, Repair(legs=(2,), at_step=9))).as_of(9) == UNDISTURBED
 
 
-@pytest.mark.parametrize("one", KINDS)
-@pytest.mark.parametrize("other", KINDS)
-def test_what_is_accepted_has_conditions(one: str, other: str) -> None:
+@pytest.mark.parametrize("earlier_kind", KINDS)
+@pytest.mark.parametrize("later_kind", KINDS)
+def test_what_is_accepted_has_conditions(earlier_kind: str, later_kind: str) -> None:
     """Every ordered pair of kinds is refused as it is made, or has conditions at any step."""
-    first = parse_disturbance(EXAMPLES[one])
-    second = replace(parse_disturbance(EXAMPLES[other]), at_step=4)
+    first = parse_disturbance(EXAMPLES[earlier_kind])
+    second = replace(parse_disturbance(EXAMPLES[later_kind]), at_step=4)
     with suppress(InvalidInput):
-        made = World((first, second))
-        assert all(made.as_of(step).as_of(0) == made.as_of(step) for step in (0, 3, 4, 9))
+        combined = World((first, second))
+        assert all(combined.as_of(step).as_of(0) == combined.as_of(step) for step in (0, 3, 4, 9))
 
 
 def test_what_ended_contradicts_nothing() -> None:
@@ -190,11 +194,11 @@ def test_a_request_refuses_what_would_end_after_the_run() -> None:
 
 
 def test_named_worlds_suit_the_robot() -> None:
-    for one in WORLDS.values():
-        assert one.title
-        assert one.help.endswith(".")
+    for choice in WORLDS.values():
+        assert choice.title
+        assert choice.help.endswith(".")
         for legs in (4, 6, 8, 12):
-            one.world.check(robot({"n_legs": legs}), "mujoco")
+            choice.world.check(robot({"n_legs": legs}), "mujoco")
     assert named_world("flat") == UNDISTURBED
     with pytest.raises(UnknownName, match="unknown world 'moon'; choose one of: flat, slope"):
         named_world("moon")
@@ -216,16 +220,18 @@ def test_later_world_begins_and_ends_later() -> None:
     assert early.later(10).as_of(9) == UNDISTURBED
 
 
-@pytest.mark.parametrize("given", ["ice", ("ice",), 3, Limp(legs=(1,))])
-def test_a_world_is_made_of_disturbances(given: Any) -> None:
+@pytest.mark.parametrize("value", ["ice", ("ice",), 3, Limp(legs=(1,))])
+def test_a_world_is_made_of_disturbances(value: Any) -> None:
     with pytest.raises(InvalidInput, match="made of disturbances, as World"):
-        World(given)
+        World(value)
     assert World([Limp(legs=(1,))]) == World((Limp(legs=(1,)),))
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['happens']} in {case['step']}")
 def test_what_holds_in_a_step_is_what_the_page_says(case: dict[str, Any]) -> None:
     now = World(tuple(map(parse_disturbance, case["happens"]))).as_of(case["step"])
-    parts = [part for disturbance in now.disturbances for part in disturbance.parts().values()]
+    effects = [
+        effect for disturbance in now.disturbances for effect in disturbance.parts().values()
+    ]
     expected = [as_text(parse_disturbance(text)) for text in case["holds"]]
-    assert sorted(map(as_text, parts)) == sorted(expected)
+    assert sorted(map(as_text, effects)) == sorted(expected)

@@ -36,11 +36,11 @@ def test_feet_of_a_ghost_stand_in_the_cells_that_are_drawn(
     spec = replace(spec, grid=grid, gait=resolve(gait, azimuths))
     FootGridDrawing(server, "/world/grid", spec, 0.0)
     nodes, legs = scene_nodes(server), len(spec.robot.legs)
-    home, others = (
+    home, other_cells = (
         nodes[f"/world/grid/{name}/fills"]["batched_positions"].reshape(legs, -1, 3)
         for name in ("home", "others")
     )
-    drawn = np.concatenate([home, others], axis=1)
+    drawn = np.concatenate([home, other_cells], axis=1)
     # So that the robot's forward direction is that of the grid's node.
     turn = np.radians(90 - spec.gait.forward_deg)
     pose = posture(spec, cells)

@@ -27,19 +27,21 @@ def looks(
     server: InProcessViser, spec: SceneSpec, lane: int = 0, root: str = "robots"
 ) -> dict[int, list[Look]]:
     """Return the looks of the parts of each leg of a lane's robot; leg 0 is the torso."""
-    nodes, found = scene_nodes(server), dict[int, list[Look]]()
+    nodes, by_leg = scene_nodes(server), dict[int, list[Look]]()
     mesh = RobotMesh(spec.robot)
     for number, part in enumerate(mesh.parts):
         name = mesh.part_name(number) if root == "robots" else number
         node, count = nodes[f"/world/run/{root}/{name}"], len(part.links)
         colors = node["batched_colors"].reshape(-1, 3)[lane * count :][:count]
         scales = node["batched_scales"]
-        own = np.ones(count) if scales is None else scales[lane * count :][:count]
-        for link, color, scale in zip(part.links, colors.tolist(), own.tolist(), strict=True):
+        lane_scales = np.ones(count) if scales is None else scales[lane * count :][:count]
+        for link, color, scale in zip(
+            part.links, colors.tolist(), lane_scales.tolist(), strict=True
+        ):
             # Bodies: the world, the torso, and of each leg coxa, femur, tibia and foot.
             leg = 0 if link == 1 else 1 + (int(link) - 2) // 4
-            found.setdefault(leg, []).append((tuple(color), scale))
-    return found
+            by_leg.setdefault(leg, []).append((tuple(color), scale))
+    return by_leg
 
 
 def torsos(server: InProcessViser) -> dict[str, Any]:
@@ -137,10 +139,13 @@ def test_ghost_of_an_evaluation_has_the_legs_of_its_time(server: InProcessViser)
         nodes = scene_nodes(server).items()
         parts = [node for name, node in nodes if "/ghosts/robot/" in name]
         # A link that is lost is drawn with the size 0.
-        scales = [part.get("batched_scales") for part in parts]
-        places = [part.get("batched_positions", ()) for part in parts]
-        both = zip(scales, places, strict=True)
-        counts = [len(own) if some is None else int((some > 0).sum()) for some, own in both]
+        scales = [node.get("batched_scales") for node in parts]
+        places = [node.get("batched_positions", ()) for node in parts]
+        scales_and_places = zip(scales, places, strict=True)
+        counts = [
+            len(link_places) if some is None else int((some > 0).sum())
+            for some, link_places in scales_and_places
+        ]
         return sum(counts)
 
     frame = frame_of(spec, lane_in(spec))

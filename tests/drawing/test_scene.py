@@ -176,9 +176,9 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
 
 def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProcessViser) -> None:
     spec, scene = race_of(1), StageScene(server)
-    known = action_values(spec)
-    known.visits[2, 3:] = 0
-    lane = replace(frame_at_rest(spec).lanes[0], action_values=known)
+    values = action_values(spec)
+    values.visits[2, 3:] = 0
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=values)
     scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
     fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)

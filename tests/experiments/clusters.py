@@ -15,14 +15,14 @@ CRASHING = "tests.experiments.crashing_agent:CrashingAgent"
 
 def small(seeds: int = 20, agent: str = "q-learning", steps: int = 30) -> ExperimentConfig:
     """Return a sweep of kinematic trials that take milliseconds each."""
-    given = {
+    values = {
         "seeds": seeds,
         "simulator": "kinematic",
         "gaits": ("left-right-origin", "front-back-vertical"),
         "agents": (agent,),
         "steps": (steps,),
     }
-    return experiment_config("sweep", given)
+    return experiment_config("sweep", values)
 
 
 def trials_of(config: ExperimentConfig) -> list[Trial]:
@@ -36,19 +36,19 @@ def one_by_one(trials: Iterable[Trial]) -> dict[str, TrialResult]:
 
 def results(outcomes: Iterable[Outcome]) -> dict[str, TrialResult]:
     """Collect results by key; check that no trial was set aside and each completed once."""
-    found = {}
+    by_key = {}
     for outcome in outcomes:
         assert outcome.result is not None, outcome
-        assert outcome.key not in found, "a trial ends once"
-        found[outcome.key] = outcome.result
-    return found
+        assert outcome.key not in by_key, "a trial ends once"
+        by_key[outcome.key] = outcome.result
+    return by_key
 
 
 def workers_of(process: psutil.Process) -> list[psutil.Process]:
     """Return the worker processes among a process's descendants, by their name."""
-    found = []
+    workers = []
     for child in process.children(recursive=True):
         with suppress(psutil.NoSuchProcess):
             if child.name() == "trial worker":
-                found.append(child)
-    return found
+                workers.append(child)
+    return workers

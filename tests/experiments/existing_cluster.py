@@ -59,7 +59,9 @@ class ExistingCluster:
     def _start(self, what: str, *arguments: str, **variables: str) -> subprocess.Popen[bytes]:
         # The modules that `dask scheduler` and `dask worker` run.
         command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments]
-        files = [part for name, file in self._files.items() for part in (_OPTIONS[name], file)]
+        files = [
+            argument for name, file in self._files.items() for argument in (_OPTIONS[name], file)
+        ]
         process = subprocess.Popen(
             [*command, "--no-dashboard", *files],
             cwd=self._folder,
@@ -83,13 +85,13 @@ def scheduler(folder: Path, tls: bool = False) -> Iterator[ExistingCluster]:
         yield ExistingCluster(folder, tls, stack)
 
 
-def _certificates(folder: Path, made: Any) -> dict[str, Any]:
+def _certificates(folder: Path, credentials: Any) -> dict[str, Any]:
     """Write PEM files for scheduler, workers and clients; paths by field of `ClusterSpec`."""
     files = {}
     for name, text in (
-        ("tls_ca", made.tls_ca_file),
-        ("tls_cert", made.tls_client_cert),
-        ("tls_key", made.tls_client_key),
+        ("tls_ca", credentials.tls_ca_file),
+        ("tls_cert", credentials.tls_client_cert),
+        ("tls_key", credentials.tls_client_key),
     ):
         (folder / f"{name}.pem").write_text(text, "utf-8")
         files[name] = str(folder / f"{name}.pem")

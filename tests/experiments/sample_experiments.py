@@ -17,14 +17,14 @@ GREEDY_M = 0.5
 ROBOTS = (robot("stiff"), robot("compliant"))
 
 
-def config(experiment: str, **given: Any) -> ExperimentConfig:
-    return experiment_config(experiment, {"simulator": "kinematic", **given})
+def config(experiment: str, **options: Any) -> ExperimentConfig:
+    return experiment_config(experiment, {"simulator": "kinematic", **options})
 
 
 @cache
-def walked(experiment: str, seeds: int, **given: Any) -> tuple[ExperimentConfig, Results]:
+def walked(experiment: str, seeds: int, **options: Any) -> tuple[ExperimentConfig, Results]:
     """Run an experiment; cached, so that it is run once per test session."""
-    tried = config(experiment, seeds=seeds, **given)
+    tried = config(experiment, seeds=seeds, **options)
     return tried, {trial.key: run_trial(trial.config) for trial in Plan(tried).trials()}
 
 
@@ -33,9 +33,9 @@ def around(middle_m: float, spread_m: float = 0.02) -> Callable[[int], float]:
     return lambda number: middle_m + spread_m * float(np.sin(1 + 7 * number))
 
 
-def alpha_of(one: TrialSetting) -> float:
+def alpha_of(setting: TrialSetting) -> float:
     """Return the learning rate of a setting whose agent has one."""
-    alpha = one.training.settings["alpha"]
+    alpha = setting.training.settings["alpha"]
     assert isinstance(alpha, float)
     return alpha
 
@@ -48,7 +48,7 @@ def sample_results(
     Greedy is at 0.36 m at time-out. With several blocks, a learner's distance after n blocks is
     1 − 0.5ⁿ of its final one; in a league or recovery it is the same from the first evaluation on.
     """
-    found: Results = {}
+    results: Results = {}
     for trial in Plan(tried).trials():
         role, agent = trial.setting.role, trial.setting.training.agent
         if role == "learner":
@@ -56,14 +56,14 @@ def sample_results(
             blocks = trial.config.blocks
             shares = [1.0] if blocks == 1 else [1 - 0.5**block for block in range(1, blocks + 1)]
             shares *= len(trial.config.evaluations) or 1
-            found[trial.key] = TrialResult(
+            results[trial.key] = TrialResult(
                 distances_m=tuple(far_m * share for share in shares),
                 finished_distance_m=far_m if blocks == 1 else None,
                 elapsed_s=16.0 if blocks == 1 else None,
             )
         elif role == "reference":
             finished_m, elapsed_s = (0.36, 21.8) if agent == "greedy" else (0.08, 91.0)
-            found[trial.key] = TrialResult(
+            results[trial.key] = TrialResult(
                 distances_m=(GREEDY_M,), finished_distance_m=finished_m, elapsed_s=elapsed_s
             )
         else:
@@ -78,23 +78,23 @@ def sample_results(
             ranked = tuple(
                 {**lane, "rank": rank} for lane, rank in zip(wall, (2, 1, 3), strict=True)
             )
-            found[trial.key] = TrialResult(distances_m=(0.3,), wall=ranked)
-    return found
+            results[trial.key] = TrialResult(distances_m=(0.3,), wall=ranked)
+    return results
 
 
 def summary_of(
-    experiment: str, distance_m: Callable[[TrialSetting], Callable[[int], float]], **given: Any
+    experiment: str, distance_m: Callable[[TrialSetting], Callable[[int], float]], **options: Any
 ) -> dict[str, Any]:
     """Summarise a made-up experiment."""
-    tried = config(experiment, **given)
+    tried = config(experiment, **options)
     return summarise(tried, sample_results(tried, distance_m))
 
 
 def setting(summary: dict[str, Any], key: str) -> dict[str, Any]:
     """Return a setting's entry of a summary."""
-    return next(one for one in summary["settings"] if one["key"] == key)
+    return next(entry for entry in summary["settings"] if entry["key"] == key)
 
 
 def claim(summary: dict[str, Any], name: str) -> dict[str, Any]:
     """Return a claim of a summary."""
-    return next(one for one in summary["claims"] if one["id"] == name)
+    return next(entry for entry in summary["claims"] if entry["id"] == name)

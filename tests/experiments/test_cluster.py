@@ -29,7 +29,7 @@ pytestmark = pytest.mark.promises
 
 
 @pytest.mark.parametrize(
-    ("given", "names"),
+    ("fields", "names"),
     [
         ({"workers": 0}, "workers must be from 1 to 512"),
         ({"workers": 1.5}, "a whole number"),
@@ -45,9 +45,9 @@ pytestmark = pytest.mark.promises
         ),
     ],
 )
-def test_an_invalid_cluster_spec_is_refused(given: dict[str, Any], names: str) -> None:
+def test_an_invalid_cluster_spec_is_refused(fields: dict[str, Any], names: str) -> None:
     with pytest.raises(InvalidInput) as refused:
-        ClusterSpec(**given)
+        ClusterSpec(**fields)
     assert names in str(refused.value)
 
 
@@ -56,8 +56,8 @@ def ports_of(process: psutil.Process) -> set[Any]:
     everyone = (process, *process.children(recursive=True))
     return {
         connection.laddr
-        for one in everyone
-        for connection in one.net_connections()
+        for process_or_child in everyone
+        for connection in process_or_child.net_connections()
         if connection.status == psutil.CONN_LISTEN
     }
 
@@ -207,8 +207,8 @@ def test_a_worker_with_other_versions_is_refused_by_name(
 def test_a_scheduler_that_does_not_answer_is_refused_with_its_address(address: str) -> None:
     with pytest.raises(InvalidInput) as refused:
         list(run_trials(trials_of(small(seeds=1)), ClusterSpec(scheduler=address)))
-    for part in (address, "dask scheduler", "leave --scheduler out"):
-        assert part in str(refused.value)
+    for words in (address, "dask scheduler", "leave --scheduler out"):
+        assert words in str(refused.value)
 
 
 def test_a_server_that_is_not_a_scheduler_is_refused_within_the_timeout(

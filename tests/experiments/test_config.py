@@ -24,7 +24,7 @@ def test_table_1_defaults_to_the_papers_gaits_with_both_observations() -> None:
     assert config.seeds == 30
     assert config.gaits == tuple(PAPER_GAITS)
     assert config.observations == ("measured", "commanded")
-    assert [one.name for one in config.robots] == ["stiff", "compliant"]
+    assert [robot_of_config.name for robot_of_config in config.robots] == ["stiff", "compliant"]
     assert (config.steps, config.blocks) == ((500, 1000), 1)
 
 
@@ -64,7 +64,7 @@ def test_bodies_have_no_gaits_of_their_own() -> None:
     bodies = experiment_config("bodies", {})
 
     assert bodies.gaits == ()
-    assert [one.name for one in bodies.robots][-1] == "centipede"
+    assert [robot_of_config.name for robot_of_config in bodies.robots][-1] == "centipede"
     with pytest.raises(UnknownName, match="unknown field of bodies 'gaits'"):
         experiment_config("bodies", {"gaits": ("tripod",)})
     with pytest.raises(InvalidInput, match="gaits must name at least one"):
@@ -95,8 +95,8 @@ def test_config_of_an_earlier_version_is_on_flat_ground() -> None:
 
 
 def test_none_counts_as_not_given() -> None:
-    given = {"seeds": None, "robots": None, "seed": 0}
-    assert experiment_config("table1", given) == experiment_config("table1", {})
+    values = {"seeds": None, "robots": None, "seed": 0}
+    assert experiment_config("table1", values) == experiment_config("table1", {})
 
 
 _OWN: dict[str, Any] = {
@@ -113,15 +113,15 @@ _OWN: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("experiment", [*PRESETS])
-@pytest.mark.parametrize("given", [{}, _OWN], ids=["defaults", "own"])
-def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any]) -> None:
+@pytest.mark.parametrize("values", [{}, _OWN], ids=["defaults", "own"])
+def test_a_config_round_trips_through_json(experiment: str, values: dict[str, Any]) -> None:
     accepted = PRESETS[experiment].fields
-    config = experiment_config(experiment, {k: v for k, v in given.items() if k in accepted})
+    config = experiment_config(experiment, {k: v for k, v in values.items() if k in accepted})
     assert from_json(ExperimentConfig, json.loads(json.dumps(to_json(config)))) == config
 
 
 @pytest.mark.parametrize(
-    ("experiment", "given", "names"),
+    ("experiment", "values", "names"),
     [
         ("table2", {}, "table1, figure4, sweep, league, recovery, groups, bodies"),
         ("table1", {"seeds": 0}, f"seeds must be a whole number from 1 to {MAX_SEEDS:,}"),
@@ -148,10 +148,10 @@ def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any
     ],
 )
 def test_an_invalid_config_is_refused_in_one_sentence(
-    experiment: str, given: dict[str, Any], names: str
+    experiment: str, values: dict[str, Any], names: str
 ) -> None:
     with pytest.raises(InvalidInput) as refused:
-        experiment_config(experiment, given)
+        experiment_config(experiment, values)
     assert names in str(refused.value)
 
 

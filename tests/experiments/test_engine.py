@@ -133,10 +133,10 @@ def test_trials_that_measure_time_come_last(trials: list[Trial]) -> None:
 
 def test_it_stops_soon_when_may_continue_returns_false(trials: list[Trial]) -> None:
     slow = trials_of(small(seeds=4, steps=10_000_000))[-4:]
-    asked = iter(range(1_000_000))
-    ended = list(run_trials(slow, ONE, lambda: next(asked) < 10))
+    calls = iter(range(1_000_000))
+    ended = list(run_trials(slow, ONE, lambda: next(calls) < 10))
     assert ended == [], "trials in progress take minutes, and must be cancelled"
-    assert next(asked) > 10
+    assert next(calls) > 10
     assert not workers_of(psutil.Process())
 
 

@@ -23,10 +23,12 @@ SAMPLES: list[tuple[str, dict[str, Any]]] = [
 ]
 
 
-def sample(experiment: str, given: dict[str, Any]) -> dict[str, Any]:
+def sample(experiment: str, options: dict[str, Any]) -> dict[str, Any]:
     """Summarise an experiment of which trials failed and were set aside."""
-    tried = config(experiment, seeds=3, gaits=GAITS, **given)
-    results = sample_results(tried, lambda one: around(0.3, 0.1 if "0.6" in one.key else 0.02))
+    tried = config(experiment, seeds=3, gaits=GAITS, **options)
+    results = sample_results(
+        tried, lambda setting: around(0.3, 0.1 if "0.6" in setting.key else 0.02)
+    )
     if experiment == "league":
         for trial in Plan(tried).trials():
             walks = (0.3,) * max(1, len(trial.config.evaluations))
@@ -36,11 +38,11 @@ def sample(experiment: str, given: dict[str, Any]) -> dict[str, Any]:
     return summarise(tried, results, {last.key: "it killed its worker"})
 
 
-@pytest.mark.parametrize(("experiment", "given"), SAMPLES, ids=[name for name, _ in SAMPLES])
+@pytest.mark.parametrize(("experiment", "options"), SAMPLES, ids=[name for name, _ in SAMPLES])
 def test_no_key_is_in_what_people_read(
-    page: Page, tmp_path: Path, experiment: str, given: dict[str, Any]
+    page: Page, tmp_path: Path, experiment: str, options: dict[str, Any]
 ) -> None:
-    opened(page, tmp_path, sample(experiment, given))
+    opened(page, tmp_path, sample(experiment, options))
     # In the command names are meant to be typed.
     page.locator(".making code").evaluate("(command) => command.remove()")
     text = text_of(page)
@@ -50,25 +52,25 @@ def test_no_key_is_in_what_people_read(
 
 
 def test_the_setting_of_a_sweep_that_spreads_most_is_told_in_words() -> None:
-    told = {one["heading"]: one["text"] for one in sample(*SAMPLES[1])["story"]}
-    assert told["One seed misleads"].startswith(
+    texts = {section["heading"]: section["text"] for section in sample(*SAMPLES[1])["story"]}
+    assert texts["One seed misleads"].startswith(
         "The setting that spreads most is Q-learning, α\u00a00.6, Left-right, "
     )
 
 
-@pytest.mark.parametrize(("experiment", "given"), SAMPLES, ids=[name for name, _ in SAMPLES])
+@pytest.mark.parametrize(("experiment", "options"), SAMPLES, ids=[name for name, _ in SAMPLES])
 def test_each_setting_and_trial_has_a_name_of_its_own(
-    experiment: str, given: dict[str, Any]
+    experiment: str, options: dict[str, Any]
 ) -> None:
-    plan = Plan(config(experiment, seeds=3, gaits=GAITS, **given))
+    plan = Plan(config(experiment, seeds=3, gaits=GAITS, **options))
     keys = [trial.key for trial in plan.trials()]
     names = trial_names(plan, keys)
     assert len(set(names.values())) == len(keys)
     assert trial_names(plan, ["left-right-origin/gone#1"]) == {
         "left-right-origin/gone#1": "left-right-origin/gone#1"
     }
-    summary = sample(experiment, given)
-    models = {one["key"]: one["plans_with"] for one in summary["worlds"]}
+    summary = sample(experiment, options)
+    models = {entry["key"]: entry["plans_with"] for entry in summary["worlds"]}
     settings = summary["settings"]
     assert len(set(setting_names(settings, summary["parameters"], models).values())) == len(
         settings
@@ -92,7 +94,7 @@ def test_a_world_without_a_name_is_told_by_what_happens_in_it(world: str, name: 
 
 
 @pytest.mark.parametrize(
-    ("experiment", "given", "name"),
+    ("experiment", "values", "name"),
     [
         ("table1", {"seeds": 30}, "Table 1 · 30 seeds"),
         ("figure4", {"seeds": 1, "agents": ("sarsa",)}, "Figure 4: Sarsa · 1 seed"),
@@ -122,9 +124,9 @@ def test_a_world_without_a_name_is_told_by_what_happens_in_it(world: str, name: 
     ],
 )
 def test_experiment_is_named_by_what_it_varies(
-    experiment: str, given: dict[str, Any], name: str
+    experiment: str, values: dict[str, Any], name: str
 ) -> None:
-    assert experiment_name(experiment_config(experiment, {"seeds": 8, **given})) == name
+    assert experiment_name(experiment_config(experiment, {"seeds": 8, **values})) == name
 
 
 def test_long_name_is_cut_before_its_seeds() -> None:

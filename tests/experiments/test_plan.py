@@ -14,8 +14,8 @@ from hexapods.experiments.config import experiment_config
 from hexapods.experiments.plan import Plan, trial_seed
 
 
-def plan(experiment: str, **given: Any) -> Plan:
-    return Plan(experiment_config(experiment, given))
+def plan(experiment: str, **values: Any) -> Plan:
+    return Plan(experiment_config(experiment, values))
 
 
 @pytest.mark.parametrize(
@@ -49,34 +49,38 @@ def test_a_key_names_everything_that_differs_from_the_paper() -> None:
     assert keys[0] == "left-right-origin/measured/stiff/greedy"
     assert "left-right-vertical/commanded/compliant/q-learning/1000" in keys
     assert keys[-1] == "front-back-vertical/commanded/compliant/q-learning/500/timed"
-    (*_, one) = plan("sweep", seeds=12, alpha=(0.1,), divisions=(3,), steps=(40,)).trials()
-    assert one.key == "front-back-vertical/measured/stiff/divisions=3/q-learning/40/alpha=0.1#11"
+    (*_, trial) = plan("sweep", seeds=12, alpha=(0.1,), divisions=(3,), steps=(40,)).trials()
+    assert trial.key == "front-back-vertical/measured/stiff/divisions=3/q-learning/40/alpha=0.1#11"
     assert plan("figure4").settings[15].key.endswith("/q-learning/8x250")
     assert plan("figure4").settings[-1].key.endswith("/q-learning/2000")
 
 
 def test_figure4_practises_the_steps_of_its_blocks_in_one_go_too() -> None:
     laid_out = plan("figure4", seeds=1, agents=("q-learning", "sarsa"), gaits=("tripod",))
-    learners = [one for one in laid_out.settings if one.role == "learner"]
+    learners = [setting for setting in laid_out.settings if setting.role == "learner"]
     in_blocks, in_one_go = learners[:4], learners[4:]
 
     assert {block_line.trial.blocks for block_line in in_blocks} == {8}
     assert [block_line.training.agent for block_line in in_one_go] == [
         block_line.training.agent for block_line in in_blocks
     ]
-    for one, blocks in zip(in_one_go, in_blocks, strict=True):
-        assert (one.trial.blocks, one.training.steps) == (1, 2000)
-        assert list(one.walks_after) == list(blocks.walks_after) == list(range(250, 2001, 250))
+    for in_one_go_setting, blocks in zip(in_one_go, in_blocks, strict=True):
+        assert (in_one_go_setting.trial.blocks, in_one_go_setting.training.steps) == (1, 2000)
+        assert (
+            list(in_one_go_setting.walks_after)
+            == list(blocks.walks_after)
+            == list(range(250, 2001, 250))
+        )
 
 
 @pytest.mark.parametrize("experiment", ["table1", "league"])
 def test_a_trial_is_found_by_its_key(experiment: str) -> None:
     laid_out = plan(experiment, seeds=2)
     for trial in laid_out.trials():
-        found = laid_out.find(trial.key)
-        assert found == trial
-        assert "config" not in vars(found), "which takes twenty times as long as the rest"
-        assert found.config == trial.config
+        trial_of_key = laid_out.find(trial.key)
+        assert trial_of_key == trial
+        assert "config" not in vars(trial_of_key), "which takes twenty times as long as the rest"
+        assert trial_of_key.config == trial.config
     learner = trial.setting.key
     for number in ("2", "-1", "+1", "01", " 1", "1 ", "١", "1_0", "9" * 5000, "", "x"):
         assert laid_out.find(f"{learner}#{number}") is None
@@ -101,12 +105,12 @@ def test_trial_seeds_are_spawned_from_the_experiments_seed() -> None:
 
 
 def test_another_seed_gives_other_trials_under_the_same_keys() -> None:
-    here, there = (
+    trials_of_seed_0, trials_of_seed_1 = (
         {trial.key: trial.config.training.seed for trial in plan("sweep", seed=seed).trials()}
         for seed in (0, 1)
     )
-    assert here.keys() == there.keys()
-    assert not set(here.values()) & set(there.values())
+    assert trials_of_seed_0.keys() == trials_of_seed_1.keys()
+    assert not set(trials_of_seed_0.values()) & set(trials_of_seed_1.values())
 
 
 def test_references_come_first_and_timed_trials_last() -> None:
@@ -120,7 +124,7 @@ def test_references_come_first_and_timed_trials_last() -> None:
 def test_sweep_varies_the_settings_of_searches() -> None:
     gaits = ("front-back-origin",)
     settings = plan("sweep", gaits=gaits, agents=("beam",), width=(1, 4), depth=(2,)).settings
-    assert [(one.training.agent, dict(one.training.settings)) for one in settings] == [
+    assert [(setting.training.agent, dict(setting.training.settings)) for setting in settings] == [
         ("greedy", {}),
         ("beam", {"width": 1, "depth": 2}),
         ("beam", {"width": 4, "depth": 2}),
@@ -133,8 +137,8 @@ def test_greedy_is_always_a_reference() -> None:
     agents = ("tests.own_agents:Restless", "tests.own_agents:ThreeStep")
     gaits = ("front-back-origin",)
     settings = plan("sweep", gaits=gaits, agents=agents, steps=(40, 80)).settings
-    found = [(setting.training.agent, setting.role) for setting in settings]
-    assert found == [
+    agents_and_roles = [(setting.training.agent, setting.role) for setting in settings]
+    assert agents_and_roles == [
         ("greedy", "reference"),
         ("tests.own_agents:ThreeStep", "reference"),
         ("tests.own_agents:Restless", "learner"),
@@ -149,7 +153,7 @@ def test_two_robots_of_one_preset_have_different_labels() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "names"),
+    ("values", "names"),
     [
         ({"seeds": 10_000, "alpha": (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)}, "the most is 200,000"),
         ({"grid_side_m": (0.04, 0.2)}, "cannot reach"),
@@ -162,10 +166,10 @@ def test_two_robots_of_one_preset_have_different_labels() -> None:
     ],
 )
 def test_invalid_setting_is_refused_before_any_trial_runs(
-    given: dict[str, Any], names: str
+    values: dict[str, Any], names: str
 ) -> None:
     with pytest.raises(HexapodError) as refused:
-        plan("sweep", **given)
+        plan("sweep", **values)
     assert names in str(refused.value)
 
 
@@ -201,12 +205,12 @@ SEARCHERS = ("greedy", "informed")
 
 def test_searchers_walk_once_where_nothing_varies() -> None:
     laid_out = plan("league", seeds=3, tolerance=0.0, **{**ONE_GAIT, "worlds": ("ice", "noise")})
-    found = {
+    trials_by_world = {
         world: [laid_out.count(s) for s in laid_out.settings if s.world == world]
         for world in ("ice", "noise")
     }
     # greedy, informed, nominal greedy; q-learning
-    assert found == {"ice": [1, 1, 1, 3], "noise": [3, 3, 3, 3]}
+    assert trials_by_world == {"ice": [1, 1, 1, 3], "noise": [3, 3, 3, 3]}
     assert len(list(laid_out.trials())) == laid_out.total
 
 
@@ -230,11 +234,11 @@ def test_recovery_begins_after_the_practice() -> None:
 
 def test_each_body_walks_in_the_gait_that_suits_it() -> None:
     settings = plan("bodies", seeds=2).settings
-    gaits = {one.robot: one.gait for one in settings}
+    gaits = {setting.robot: setting.gait for setting in settings}
 
     assert gaits["stiff"] == "left-right-origin"
     assert gaits["crab"] == "tetrapod"
     assert gaits["starfish"] == "right 1, left 2, 1+3 2+5 4"
-    learners = [one for one in settings if one.role == "learner"]
+    learners = [setting for setting in settings if setting.role == "learner"]
     assert len(learners) == 2 * len(gaits)
-    assert all(one.trial.evaluations == (25, 50, 100, 150, 250) for one in learners)
+    assert all(setting.trial.evaluations == (25, 50, 100, 150, 250) for setting in learners)

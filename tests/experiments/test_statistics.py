@@ -63,13 +63,13 @@ def test_the_interquartile_mean_of_three_numbers_is_their_mean() -> None:
 
 def test_the_coverage_of_the_bootstrap_interval_is_about_95_percent() -> None:
     rng = np.random.default_rng(1)
-    held = 0
+    covering = 0
     for _ in range(200):
-        found = iqm_interval((tuple(rng.normal(5, 1, 30).tolist()),), 0)
-        assert found.low is not None
-        assert found.high is not None
-        held += found.low < 5 < found.high
-    assert 0.88 <= held / 200 <= 0.98
+        estimate = iqm_interval((tuple(rng.normal(5, 1, 30).tolist()),), 0)
+        assert estimate.low is not None
+        assert estimate.high is not None
+        covering += estimate.low < 5 < estimate.high
+    assert 0.88 <= covering / 200 <= 0.98
 
 
 def test_an_interval_is_deterministic_for_a_seed() -> None:
@@ -82,8 +82,8 @@ def test_an_interval_is_deterministic_for_a_seed() -> None:
 
 def test_strata_are_resampled_separately() -> None:
     """A difference between two gaits without variance adds no uncertainty."""
-    found = iqm_interval(((0.0,) * 10, (1.0,) * 10), 0)
-    assert found == Interval(0.5, 0.5, 0.5)
+    estimate = iqm_interval(((0.0,) * 10, (1.0,) * 10), 0)
+    assert estimate == Interval(0.5, 0.5, 0.5)
     mixed = iqm_interval(((0.0,) * 10 + (1.0,) * 10,), 0)
     assert mixed.low is not None
     assert mixed.low < 0.4
@@ -93,30 +93,30 @@ def test_strata_are_resampled_separately() -> None:
 def test_fewer_than_three_seeds_have_no_interval_and_establish_nothing(
     points: tuple[float, ...],
 ) -> None:
-    found = iqm_interval((points,), 0)
-    assert found == Interval(sum(points) / len(points), None, None)
-    assert found.exceeds(0.0) == "not established"
+    estimate = iqm_interval((points,), 0)
+    assert estimate == Interval(sum(points) / len(points), None, None)
+    assert estimate.exceeds(0.0) == "not established"
     assert share_ahead(points, 0.0).low is None
 
 
 def test_a_bootstrap_interval_of_fewer_than_five_seeds_decides_nothing() -> None:
-    found = iqm_interval(((0.4, 0.41, 0.42),), 0)
-    assert found.exceeds(0.1) == "yes"
-    assert bootstrap_exceeds(found, 0.1, fewest=3) == "not established"
-    assert bootstrap_exceeds(found, 0.1, fewest=5) == "yes"
+    estimate = iqm_interval(((0.4, 0.41, 0.42),), 0)
+    assert estimate.exceeds(0.1) == "yes"
+    assert bootstrap_exceeds(estimate, 0.1, fewest=3) == "not established"
+    assert bootstrap_exceeds(estimate, 0.1, fewest=5) == "yes"
 
 
 def test_shares_have_wilson_intervals() -> None:
-    found = share(8, 10)
-    assert found.value == 0.8
-    assert (found.low, found.high) == pytest.approx((0.490, 0.943), abs=0.001)
+    estimate = share(8, 10)
+    assert estimate.value == 0.8
+    assert (estimate.low, estimate.high) == pytest.approx((0.490, 0.943), abs=0.001)
 
 
 def test_a_tie_counts_half_and_widens_the_interval_on_both_sides() -> None:
-    found = share_ahead([1.0, 2.0, 3.0, 4.0], 2.0)
-    assert found.value == 0.625
-    assert found.low == pytest.approx(share(2, 4).low)
-    assert found.high == pytest.approx(share(3, 4).high)
+    estimate = share_ahead([1.0, 2.0, 3.0, 4.0], 2.0)
+    assert estimate.value == 0.625
+    assert estimate.low == pytest.approx(share(2, 4).low)
+    assert estimate.high == pytest.approx(share(3, 4).high)
 
 
 def test_a_seed_exactly_at_the_limit_reaches_it() -> None:
@@ -124,7 +124,7 @@ def test_a_seed_exactly_at_the_limit_reaches_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("found", "verdict"),
+    ("estimate", "verdict"),
     [
         (Interval(0.7, 0.6, 0.8), "yes"),
         (Interval(0.3, 0.2, 0.4), "no"),
@@ -132,8 +132,8 @@ def test_a_seed_exactly_at_the_limit_reaches_it() -> None:
         (Interval(0.7, 0.5, 0.8), "not established"),
     ],
 )
-def test_a_verdict_follows_from_the_interval(found: Interval, verdict: str) -> None:
-    assert found.exceeds(0.5) == verdict
+def test_a_verdict_follows_from_the_interval(estimate: Interval, verdict: str) -> None:
+    assert estimate.exceeds(0.5) == verdict
 
 
 def test_negating_an_interval_swaps_its_limits() -> None:
@@ -144,12 +144,12 @@ def test_the_probability_of_improvement_is_over_all_pairs_of_seeds() -> None:
     rng = np.random.default_rng(3)
     a, b = (tuple(rng.integers(0, 9, n).astype(float).tolist()) for n in (12, 15))
     pairs = [(x > y) + 0.5 * (x == y) for x, y in product(a, b)]
-    found = improvement((a,), (b,), 0)
-    assert found.value == pytest.approx(np.mean(pairs))
-    assert found.value == stats.mannwhitneyu(a, b).statistic / (12 * 15)
-    assert found.low is not None
-    assert found.high is not None
-    assert found.low < found.value < found.high
+    estimate = improvement((a,), (b,), 0)
+    assert estimate.value == pytest.approx(np.mean(pairs))
+    assert estimate.value == stats.mannwhitneyu(a, b).statistic / (12 * 15)
+    assert estimate.low is not None
+    assert estimate.high is not None
+    assert estimate.low < estimate.value < estimate.high
 
 
 def test_the_probability_of_improvement_is_averaged_over_strata() -> None:
@@ -161,13 +161,13 @@ def test_the_probability_of_improvement_is_averaged_over_strata() -> None:
 def test_paired_numbers_of_a_seed_are_resampled_together() -> None:
     """Each seed gains the same, so the gain's interval has no width although the seeds vary."""
     start = np.linspace(0, 1, 20)
-    both = np.stack([start, start + 0.01])
+    pairs = np.stack([start, start + 0.01])
 
     def gain(middles: FloatArray) -> FloatArray:
         return np.asarray(middles[1] - middles[0])
 
-    found = paired_interval([both], gain, 0)
-    assert found == pytest.approx((0.01, 0.01, 0.01))
+    estimate = paired_interval([pairs], gain, 0)
+    assert estimate == pytest.approx((0.01, 0.01, 0.01))
 
 
 def test_the_quantile_of_a_published_value() -> None:

@@ -46,9 +46,9 @@ def test_the_kinematic_table_agrees_with_the_specification() -> None:
     assert two_step["total"]["iqm_m"] == pytest.approx(greedy["total"]["iqm_m"])
     assert (greedy["elapsed_s"], two_step["elapsed_s"]) == pytest.approx((21.76, 90.88), abs=0.01)
     for steps, level in ((500, 0.74), (1000, 0.83)):
-        found = setting(summary, f"{LRO}/measured/stiff/q-learning/{steps}")
-        assert found["n"] == SEEDS
-        assert found["relative"]["low"] < level < found["relative"]["high"]
+        learner = setting(summary, f"{LRO}/measured/stiff/q-learning/{steps}")
+        assert learner["n"] == SEEDS
+        assert learner["relative"]["low"] < level < learner["relative"]["high"]
     assert setting(summary, Q500)["walkers"]["share"] >= 0.8
     assert summary["trials"]["done"] == summary["trials"]["total"]
 
@@ -71,40 +71,40 @@ def test_figure4_has_learning_curves_over_its_blocks() -> None:
         results[f"{one_go_key}#0"].distances_m
     )
     assert in_one_go["points_m"] != curve["points_m"]
-    found = setting(summary, key)
-    assert found["total"]["points_m"] == curve["points_m"][-1]
-    assert found["finished"] is None
-    assert found["beats_greedy"] is None
+    learner = setting(summary, key)
+    assert learner["total"]["points_m"] == curve["points_m"][-1]
+    assert learner["finished"] is None
+    assert learner["beats_greedy"] is None
 
 
 def test_a_setting_has_its_averages_and_the_distances_of_all_seeds() -> None:
     tried = config("table1", seeds=8, gaits=(LRO,))
     results = sample_results(tried, lambda _: lambda number: 0.1 * number)
-    found = setting(summarise(tried, results), Q500)
-    assert found["total"]["points_m"] == pytest.approx([0.1 * n for n in range(8)])
-    assert found["total"]["iqm_m"] == pytest.approx(0.35)
-    assert found["total"]["median_m"] == pytest.approx(0.35)
-    assert found["relative"]["iqm"] == pytest.approx(0.7)
-    assert found["walkers"]["share"] == 5 / 8  # from 0.3 m; greedy has 0.5 m
-    assert found["reaches_greedy"]["share"] == 3 / 8  # from 0.475 m
-    assert found["beats_greedy"]["share"] == 4 / 8  # before greedy's 0.36 m at time-out
-    assert found["beats_greedy"]["verdict"] == "not established"
+    learner = setting(summarise(tried, results), Q500)
+    assert learner["total"]["points_m"] == pytest.approx([0.1 * n for n in range(8)])
+    assert learner["total"]["iqm_m"] == pytest.approx(0.35)
+    assert learner["total"]["median_m"] == pytest.approx(0.35)
+    assert learner["relative"]["iqm"] == pytest.approx(0.7)
+    assert learner["walkers"]["share"] == 5 / 8  # from 0.3 m; greedy has 0.5 m
+    assert learner["reaches_greedy"]["share"] == 3 / 8  # from 0.475 m
+    assert learner["beats_greedy"]["share"] == 4 / 8  # before greedy's 0.36 m at time-out
+    assert learner["beats_greedy"]["verdict"] == "not established"
 
 
 def test_a_published_value_has_its_quantile_among_our_seeds() -> None:
     tried = config("table1", seeds=8, gaits=(LRO,))
     results = sample_results(tried, lambda _: lambda number: 0.1 * number)
-    found = setting(summarise(tried, results), Q500)["published"]
-    assert found["total_m"] == found["finished_m"] == 0.25
-    assert found["total_quantile"] == 3 / 8
+    printed = setting(summarise(tried, results), Q500)["published"]
+    assert printed["total_m"] == printed["finished_m"] == 0.25
+    assert printed["total_quantile"] == 3 / 8
     two_step = setting(summarise(tried, results), f"{LRO}/measured/stiff/two-step")["published"]
     assert (two_step["total_m"], two_step["finished_m"]) == (None, 0.04)
     assert two_step["finished_quantile"] is None  # a single walk is not a distribution
 
 
 def test_published_values_are_those_of_the_papers_table() -> None:
-    both = [published("front-back-origin", "q-learning", steps) for steps in (500, 1000)]
-    assert [one.total_m for one in both if one] == [0.075, 0.375]
+    printed = [published("front-back-origin", "q-learning", steps) for steps in (500, 1000)]
+    assert [distances.total_m for distances in printed if distances] == [0.075, 0.375]
     greedy = published("left-right-vertical", "greedy", 0)
     assert greedy is not None
     assert (greedy.finished_m, greedy.total_m) == (0.425, 0.525)
@@ -115,7 +115,7 @@ def test_published_values_are_those_of_the_papers_table() -> None:
 def test_gaits_are_the_strata_of_pooled_measures() -> None:
     far = {"left-right-vertical": 0.1}
     summary = summary_of(
-        "table1", lambda one: around(far.get(one.gait, 0.4), 0.001), seeds=6, robots=None
+        "table1", lambda setting: around(far.get(setting.gait, 0.4), 0.001), seeds=6, robots=None
     )
     pool = summary["pooled"][0]
     assert pool["n"] == 24
@@ -125,12 +125,12 @@ def test_gaits_are_the_strata_of_pooled_measures() -> None:
     assert pool["relative"]["high"] - pool["relative"]["low"] < 0.01
 
 
-@pytest.mark.parametrize(("seeds", "known"), [(2, False), (3, True)])
-def test_pooled_intervals_need_enough_seeds_in_each_gait(seeds: int, known: bool) -> None:
+@pytest.mark.parametrize(("seeds", "has_interval"), [(2, False), (3, True)])
+def test_pooled_intervals_need_enough_seeds_in_each_gait(seeds: int, has_interval: bool) -> None:
     pool = summary_of("table1", lambda _: around(0.3), seeds=seeds)["pooled"][0]
     assert pool["n"] == 4 * seeds
     for measure in ("relative", "walkers", "beats_greedy", "reaches_greedy"):
-        assert (pool[measure]["low"] is not None) == known
+        assert (pool[measure]["low"] is not None) == has_interval
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
@@ -138,16 +138,16 @@ def test_pooled_intervals_need_enough_seeds_in_each_gait(seeds: int, known: bool
 def test_a_partly_filled_experiment_has_the_same_shape(experiment: str, done: int) -> None:
     tried = config(experiment, seeds=4)
     whole = sample_results(tried, lambda _: around(0.3))
-    part = dict(list(whole.items())[:done])
-    summary = summarise(tried, part)
+    partial_results = dict(list(whole.items())[:done])
+    summary = summarise(tried, partial_results)
     assert summary.keys() == summarise(tried, whole).keys()
-    assert [one["key"] for one in summary["settings"]] == [
-        one.key for one in Plan(tried).settings if one.role != "timed"
+    assert [entry["key"] for entry in summary["settings"]] == [
+        setting.key for setting in Plan(tried).settings if setting.role != "timed"
     ]
     assert summary["trials"]["done"] == min(done, len(whole))
-    for one in summary["settings"]:
-        assert one["n"] == sum(key.startswith(one["key"] + "#") for key in part)
-        assert (one["total"] is None) == (one["n"] == 0)
+    for entry in summary["settings"]:
+        assert entry["n"] == sum(key.startswith(entry["key"] + "#") for key in partial_results)
+        assert (entry["total"] is None) == (entry["n"] == 0)
     json.dumps(summary, allow_nan=False)
 
 
@@ -163,8 +163,8 @@ def test_a_failed_trial_is_excluded_from_all_measures_and_listed() -> None:
     results = sample_results(tried, lambda _: around(0.3))
     results[f"{Q500}#2"] = TrialResult(failure="the physics diverged")
     summary = summarise(tried, results, {f"{Q500}#3": "it killed its worker three times"})
-    found = setting(summary, Q500)
-    assert (found["n"], found["failed"]) == (3, 2), "one of them was set aside"
+    learner = setting(summary, Q500)
+    assert (learner["n"], learner["failed"]) == (3, 2), "one of them was set aside"
     assert summary["trials"]["failed"] == 2
     label = "Q-learning, 500\u00a0steps, Left-right, opposite, feet measured, stiff robot, seed 2"
     failure = {"key": f"{Q500}#2", "label": label, "reason": "the physics diverged"}
@@ -176,10 +176,10 @@ def test_without_greedys_result_relative_measures_are_none() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
     results = sample_results(tried, lambda _: around(0.3))
     del results[f"{LRO}/measured/stiff/greedy#0"]
-    found = setting(summarise(tried, results), Q500)
-    assert found["n"] == 4
+    learner = setting(summarise(tried, results), Q500)
+    assert learner["n"] == 4
     for measure in ("relative", "walkers", "beats_greedy", "reaches_greedy"):
-        assert found[measure] is None
+        assert learner[measure] is None
 
 
 def test_a_greedy_agent_that_hardly_moves_is_not_used_as_a_reference() -> None:
@@ -196,9 +196,9 @@ def test_distances_are_measured_against_the_best_known(experiment: str) -> None:
     only = {"observations": ("measured",), "robots": ROBOTS[:1], "simulator": "mujoco"}
     summary = summary_of(experiment, lambda _: around(0.3, 0.0), seeds=4, gaits=gaits, **only)
     best_m = {gait: kept()["stiff", "flat", gait] for gait in gaits}
-    for one in [*summary["settings"], *summary["curves"]]:
-        assert one["best_known_m"] == best_m[one["gait"]]
-    learner = next(one for one in summary["settings"] if one["role"] == "learner")
+    for entry in [*summary["settings"], *summary["curves"]]:
+        assert entry["best_known_m"] == best_m[entry["gait"]]
+    learner = next(entry for entry in summary["settings"] if entry["role"] == "learner")
     far_m = learner["total"]["iqm_m"]
     assert learner["of_best_known"]["iqm"] == pytest.approx(far_m / best_m[LRO])
     pool = summary["pooled"][0]
@@ -208,13 +208,13 @@ def test_distances_are_measured_against_the_best_known(experiment: str) -> None:
 
 
 def test_where_one_gait_has_no_best_known_distance_their_mean_has_none() -> None:
-    own = GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6)))
+    own_gait = GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6)))
     summary = summary_of(
-        "sweep", lambda _: around(0.3), seeds=4, gaits=(LRO, own), simulator="mujoco"
+        "sweep", lambda _: around(0.3), seeds=4, gaits=(LRO, own_gait), simulator="mujoco"
     )
-    learners = [one for one in summary["settings"] if one["role"] == "learner"]
-    assert [one["best_known_m"] is None for one in learners] == [False, True]
-    assert [one["of_best_known"] is None for one in learners] == [False, True]
+    learners = [entry for entry in summary["settings"] if entry["role"] == "learner"]
+    assert [entry["best_known_m"] is None for entry in learners] == [False, True]
+    assert [entry["of_best_known"] is None for entry in learners] == [False, True]
     assert summary["pooled"][0]["of_best_known"] is None
     assert summary["pooled"][0]["best_known_relative"] is None
 
@@ -223,25 +223,25 @@ def test_learning_agents_are_compared_in_pairs() -> None:
     restless = "tests.own_agents:Restless"
     far = {"q-learning": 0.4, restless: 0.1}
     summary = summary_of(
-        "sweep", lambda one: around(far[one.training.agent]), seeds=6, agents=tuple(far)
+        "sweep", lambda setting: around(far[setting.training.agent]), seeds=6, agents=tuple(far)
     )
     assert len(summary["versus"]) == 4
-    found = summary["versus"][0]
-    assert (found["a"], found["b"]) == ("q-learning", restless)
-    assert (found["probability"], found["verdict"]) == (1, "yes")
+    comparison = summary["versus"][0]
+    assert (comparison["a"], comparison["b"]) == ("q-learning", restless)
+    assert (comparison["probability"], comparison["verdict"]) == (1, "yes")
 
 
 def test_a_search_agent_is_pooled_without_an_interval() -> None:
     three = "tests.own_agents:ThreeStep"
     summary = summary_of("sweep", lambda _: around(0.3), seeds=4, agents=("q-learning", three))
-    found = next(one for one in summary["pooled"] if one["agent"] == three)
-    assert found["relative"] == {"iqm": 1.0, "low": None, "high": None}
-    assert found["walkers"] is None
+    pool = next(entry for entry in summary["pooled"] if entry["agent"] == three)
+    assert pool["relative"] == {"iqm": 1.0, "low": None, "high": None}
+    assert pool["walkers"] is None
 
 
 def test_timed_races_are_listed_with_their_lanes() -> None:
     summary = summary_of("table1", lambda _: around(0.3), seeds=1, gaits=(LRO,))
-    assert [one["gait"] for one in summary["timed"]] == [LRO] * 4
+    assert [race["gait"] for race in summary["timed"]] == [LRO] * 4
     lanes = summary["timed"][0]["lanes"]
     assert [lane["agent"] for lane in lanes] == ["q-learning", "greedy", "two-step"]
 

@@ -25,19 +25,19 @@ from tests.promises.length import at_length
 from tests.quick_robot import HASTY
 
 
-def practice(**given: Any) -> TrainingConfig:
-    fields: dict[str, Any] = {"simulator": "kinematic", "evaluate_every": 0, **given}
+def practice(**values: Any) -> TrainingConfig:
+    fields: dict[str, Any] = {"simulator": "kinematic", "evaluate_every": 0, **values}
     return training_config(**{"gait": "left-right-origin", **fields})
 
 
-def trials(experiment: str, **given: Any) -> list[Trial]:
-    fields = {"simulator": "kinematic", "gaits": ("left-right-origin",), **given}
+def trials(experiment: str, **values: Any) -> list[Trial]:
+    fields = {"simulator": "kinematic", "gaits": ("left-right-origin",), **values}
     return list(Plan(experiment_config(experiment, fields)).trials())
 
 
-def distances_h(found: list[Trial]) -> Any:
+def distances_h(some_trials: list[Trial]) -> Any:
     """Run the learners among some trials; distances in half grid sides, (seeds, blocks)."""
-    learners = [one.config for one in found if one.setting.role == "learner"]
+    learners = [trial.config for trial in some_trials if trial.setting.role == "learner"]
     return np.array([run_trial(config).distances_m for config in learners]) / H_M
 
 
@@ -109,8 +109,10 @@ def test_the_paper_clock_charges_for_simulated_transitions() -> None:
 
 def test_distances_after_practice_agree_with_the_specification() -> None:
     seeds = at_length(40, 80)
-    found = distances_h(trials("sweep", seeds=seeds, steps=(250, 500), observations=("measured",)))
-    shares = [100 * interquartile_mean(row) / GREEDY_H for row in found.reshape(seeds, 2).T]
+    distances = distances_h(
+        trials("sweep", seeds=seeds, steps=(250, 500), observations=("measured",))
+    )
+    shares = [100 * interquartile_mean(row) / GREEDY_H for row in distances.reshape(seeds, 2).T]
     assert shares == pytest.approx([60, 74], rel=0.05)
 
 
@@ -164,10 +166,10 @@ def test_evaluations_on_the_way_are_those_of_a_training() -> None:
 
 
 def test_learner_is_evaluated_in_the_world_as_it_is() -> None:
-    given: dict[str, Any] = {"steps": 4, "seed": 1, "simulator": "mujoco", "robot": HASTY}
-    training = practice(**given, world=named_world("ice").later(2))
-    icy = practice(**given, world=named_world("ice"))
-    flat = practice(**given)
+    values: dict[str, Any] = {"steps": 4, "seed": 1, "simulator": "mujoco", "robot": HASTY}
+    training = practice(**values, world=named_world("ice").later(2))
+    icy = practice(**values, world=named_world("ice"))
+    flat = practice(**values)
 
     def frozen(config: TrainingConfig, steps: int) -> float:
         (distance_m,) = run_trial(TrialConfig(training=config, evaluations=(steps,))).distances_m
@@ -178,8 +180,8 @@ def test_learner_is_evaluated_in_the_world_as_it_is() -> None:
 
 
 def test_searcher_may_plan_with_the_robot_as_designed() -> None:
-    given: dict[str, Any] = {"simulator": "mujoco", "robot": HASTY, "steps": 1}
-    limp = practice(agent="greedy", **given, world=named_world("limp-pair"))
+    values: dict[str, Any] = {"simulator": "mujoco", "robot": HASTY, "steps": 1}
+    limp = practice(agent="greedy", **values, world=named_world("limp-pair"))
     knows = run_trial(TrialConfig(training=limp, blocks=0))
     nominal = run_trial(TrialConfig(training=limp, blocks=0, plans_with="nominal"))
 

@@ -22,12 +22,12 @@ LRO = "left-right-origin"
 WALKS_M = {"greedy": 0.5, "greedy/nominal": 0.1, "informed": 0.4}
 
 
-def summary(experiment: str, curve_m: tuple[float, ...], **given: Any) -> dict[str, Any]:
+def summary(experiment: str, curve_m: tuple[float, ...], **options: Any) -> dict[str, Any]:
     """Summarise made-up walks, in which each seed comes a millimetre farther than the last."""
     agents = ("q-learning", "informed") if experiment == "league" else ("q-learning",)
     gaits = {} if experiment == "bodies" else {"gaits": (LRO,)}
-    asked = {"seeds": 4, **gaits, "agents": agents, **given}
-    config = experiment_config(experiment, asked)
+    values = {"seeds": 4, **gaits, "agents": agents, **options}
+    config = experiment_config(experiment, values)
     results = {}
     for trial in Plan(config).trials():
         more_m = 0.001 * trial.seed_number
@@ -39,19 +39,20 @@ def summary(experiment: str, curve_m: tuple[float, ...], **given: Any) -> dict[s
         results[trial.key] = TrialResult(
             distances_m=tuple(metres + more_m for metres in distances_m), earned_m=earned_m
         )
-    found = summarise(config, results)
-    SummaryView.model_validate(json.loads(json.dumps(found)))  # is what REST promises
+    summarised = summarise(config, results)
+    SummaryView.model_validate(json.loads(json.dumps(summarised)))  # is what REST promises
     trials_csv(config, results, {})
-    return found
+    return summarised
 
 
-def entry(found: dict[str, Any], agent: str, world: str) -> dict[str, Any]:
-    (one,) = [
-        one
-        for one in found["worlds"]
-        if (one["agent"], one["world"]) == (agent, world) and one["plans_with"] != "nominal"
+def entry(league: dict[str, Any], agent: str, world: str) -> dict[str, Any]:
+    (entry_of_agent,) = [
+        entry_of_agent
+        for entry_of_agent in league["worlds"]
+        if (entry_of_agent["agent"], entry_of_agent["world"]) == (agent, world)
+        and entry_of_agent["plans_with"] != "nominal"
     ]
-    return dict(one)
+    return dict(entry_of_agent)
 
 
 def test_mean_distance_is_the_area_under_the_curve() -> None:
@@ -67,8 +68,8 @@ def test_steps_until_a_distance_are_those_of_the_first_evaluation() -> None:
 
 
 def test_league_measures_learners_against_greedy_and_best_known() -> None:
-    found = summary("league", (0.1, 0.3, 0.48), steps=(100,), worlds=("flat", "limp-pair"))
-    learner = entry(found, "q-learning", "limp-pair")
+    league = summary("league", (0.1, 0.3, 0.48), steps=(100,), worlds=("flat", "limp-pair"))
+    learner = entry(league, "q-learning", "limp-pair")
     greedy_m, best_m = 0.5015, kept()["stiff", "limp-pair", LRO]  # greedy's mean over four seeds
 
     assert learner["curve"]["steps"] == [25, 50, 100]
@@ -81,16 +82,16 @@ def test_league_measures_learners_against_greedy_and_best_known() -> None:
     assert learner["until_greedy"]["median_steps"] == 100
     assert learner["until_greedy"]["reached"] == 1
     assert learner["until_best_known"]["median_steps"] is None
-    assert entry(found, "informed", "flat")["curve"] is None
-    assert entry(found, "informed", "limp-pair")["plans_with"] == "world"
+    assert entry(league, "informed", "flat")["curve"] is None
+    assert entry(league, "informed", "limp-pair")["plans_with"] == "world"
     assert learner["plans_with"] is None
-    assert len(found["worlds"]) == 2 * 4
+    assert len(league["worlds"]) == 2 * 4
 
 
 def test_recovery_counts_from_when_it_happened() -> None:
     curve_m = (0.05, 0.06, 0.3, 0.46, 0.5, 0.5)
-    found = summary("recovery", curve_m, worlds=("limp-pair",))
-    learner = entry(found, "q-learning", "limp-pair")
+    recovery = summary("recovery", curve_m, worlds=("limp-pair",))
+    learner = entry(recovery, "q-learning", "limp-pair")
 
     assert learner["steps"] == 100
     assert learner["curve"]["steps"] == [0, 1, 25, 50, 100, 150]
@@ -103,13 +104,13 @@ def test_recovery_counts_from_when_it_happened() -> None:
 def test_steps_are_counted_to_a_share(
     page: Page, tmp_path: Path, experiment: str, share: str
 ) -> None:
-    found = summary(experiment, (0.1, 0.46), steps=(50,), agents=("q-learning",))
-    learners = [one for one in found["worlds"] if one["role"] == "learner"]
-    assert {one["until_greedy"]["of"] for one in learners} == {int(share) / 100}
+    comparison = summary(experiment, (0.1, 0.46), steps=(50,), agents=("q-learning",))
+    learners = [entry for entry in comparison["worlds"] if entry["role"] == "learner"]
+    assert {entry["until_greedy"]["of"] for entry in learners} == {int(share) / 100}
     # 0.4615 m is 92 % of greedy's 0.5015 m.
     median = {"95": None, "90": 50}[share]
-    assert {one["until_greedy"]["median_steps"] for one in learners} == {median}
-    opened(page, tmp_path, found)
+    assert {entry["until_greedy"]["median_steps"] for entry in learners} == {median}
+    opened(page, tmp_path, comparison)
     assert f"Steps to {share} % of greedy" in text_of(page)
 
 
@@ -117,8 +118,12 @@ def test_half_grown_league_has_what_its_trials_show() -> None:
     config = experiment_config("league", {"seeds": 2, "gaits": (LRO,), "worlds": ("ice",)})
     assert summarise(config, {})["worlds"] == []
     (first, *_) = Plan(config).trials()
-    (one,) = summarise(config, {first.key: TrialResult(distances_m=(0.4,))})["worlds"]
-    assert (one["agent"], one["n"], one["greedy_nominal_m"]) == ("greedy", 1, None)
+    (entry_of_greedy,) = summarise(config, {first.key: TrialResult(distances_m=(0.4,))})["worlds"]
+    assert (
+        entry_of_greedy["agent"],
+        entry_of_greedy["n"],
+        entry_of_greedy["greedy_nominal_m"],
+    ) == ("greedy", 1, None)
 
 
 @pytest.mark.parametrize("experiment", ["league", "recovery"])

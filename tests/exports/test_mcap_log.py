@@ -29,10 +29,10 @@ def data(raced: RecordedWalks) -> bytes:
 def messages(data: bytes) -> Messages:
     """Return the decoded messages by topic, in order of time."""
     reader = make_reader(io.BytesIO(data), decoder_factories=[DecoderFactory()])
-    found: Messages = {}
+    by_topic: Messages = {}
     for _, channel, _, message in reader.iter_decoded_messages():
-        found.setdefault(channel.topic, []).append(message)
-    return found
+        by_topic.setdefault(channel.topic, []).append(message)
+    return by_topic
 
 
 def seconds(timestamp: Any) -> float:
@@ -65,7 +65,7 @@ def test_a_server_that_stops_writes_no_log(raced: RecordedWalks) -> None:
 
 
 def test_a_log_that_would_be_too_long_is_refused(raced: RecordedWalks) -> None:
-    frames = sum(len(one.motion(index).time_s) for one in raced.lanes for index in range(6))
+    frames = sum(len(lane.motion(index).time_s) for lane in raced.lanes for index in range(6))
     assert b"".join(mcap_log(raced, "paper", Execution(max_frames=frames)))
     with pytest.raises(InvalidInput, match=f"would have {frames} frames"):
         mcap_log(raced, "paper", Execution(max_frames=frames - 1))
@@ -94,7 +94,9 @@ def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Me
 def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages: Messages) -> None:
     lane = raced.lanes[1]
     last = [
-        one for one in messages["/tf"] if one.transforms[0].child_frame_id.startswith("lane1/")
+        message
+        for message in messages["/tf"]
+        if message.transforms[0].child_frame_id.startswith("lane1/")
     ][-1]
     above = {transform.child_frame_id: transform for transform in last.transforms}
     pose = lane.motion(5).qpos[-1:].astype(float)
@@ -103,9 +105,9 @@ def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages
         """Return position and rotation of a frame in that of its lane."""
         if frame == "lane1":
             return np.zeros(3), np.eye(3)
-        one = above[frame]
-        position, rotation = place_of(one.parent_frame_id)
-        t, r = one.translation, one.rotation
+        transform = above[frame]
+        position, rotation = place_of(transform.parent_frame_id)
+        t, r = transform.translation, transform.rotation
         turn = rotation_matrices(np.array([[0, 0, 0, r.w, r.x, r.y, r.z]]))[0]
         return position + rotation @ [t.x, t.y, t.z], rotation @ turn
 
@@ -114,6 +116,6 @@ def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages
     for leg in range(1, 7):
         assert place_of(f"lane1/leg{leg}_foot")[0] == pytest.approx(feet[leg - 1], abs=1e-6)
     (origin,) = [
-        t for one in messages["/tf"] for t in one.transforms if t.child_frame_id == "lane1"
+        t for message in messages["/tf"] for t in message.transforms if t.child_frame_id == "lane1"
     ]
     assert (origin.parent_frame_id, origin.translation.x) == ("world", 1)

@@ -111,8 +111,8 @@ def test_a_run_of_years_is_not_enumerated(parts: StageParts) -> None:
 def test_a_server_that_stops_encodes_no_more(parts: StageParts) -> None:
     run, stopping = parts.finished_race(LANES), Stopping()
     frames = ReplayFrames(Replays(parts.store, parts.recordings), stopping)
-    known = frames.segment(run.id, "paper", 0, 0)
+    first_segment = frames.segment(run.id, "paper", 0, 0)
     stopping.set()
     with pytest.raises(Busy, match="stopping"):
         page_of(frames, run.id)
-    assert frames.segment(run.id, "paper", 0, 0) == known
+    assert frames.segment(run.id, "paper", 0, 0) == first_segment

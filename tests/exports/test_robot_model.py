@@ -16,27 +16,27 @@ OWN = robot({"n_legs": 5, "mount_radius_m": 0.12, "torso_kg": 2.5, "servo_kp": 6
 STANDS_S = 1.0
 
 
-def loaded(made: Robot, folder: Path) -> mujoco.MjModel:
+def loaded(robot: Robot, folder: Path) -> mujoco.MjModel:
     """Return the model, from a folder with nothing else in it."""
     file = folder / "robot.xml"
-    file.write_text(robot_mjcf(made))
+    file.write_text(robot_mjcf(robot))
     return mujoco.MjModel.from_xml_path(str(file))
 
 
 @pytest.mark.parametrize("name", CREATURES)
 def test_each_creature_stands_in_its_home_stance(name: str, tmp_path: Path) -> None:
-    made = PRESETS[name]
-    model = loaded(made, tmp_path)
+    robot = PRESETS[name]
+    model = loaded(robot, tmp_path)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("home").id)
     mujoco.mj_forward(model, data)
 
-    feet = np.array([data.geom(f"leg{leg}_foot").xpos for leg in range(1, len(made.legs) + 1)])
-    homes = [(*home, made.foot_radius_m) for home in made.homes_m]
+    feet = np.array([data.geom(f"leg{leg}_foot").xpos for leg in range(1, len(robot.legs) + 1)])
+    homes = [(*home, robot.foot_radius_m) for home in robot.homes_m]
     assert feet == pytest.approx(np.array(homes), abs=1e-5)
 
     begin_m = data.qpos[2]
-    mujoco.mj_step(model, data, round(STANDS_S / made.dt_s))
+    mujoco.mj_step(model, data, round(STANDS_S / robot.dt_s))
 
     upright = data.body("torso").xmat[8]
     assert upright > 0.98
@@ -44,17 +44,17 @@ def test_each_creature_stands_in_its_home_stance(name: str, tmp_path: Path) -> N
     assert np.abs(data.qpos[:2]).max() < 0.01, "it did not slide away"
 
 
-@pytest.mark.parametrize("made", [PRESETS["spider"], OWN], ids=lambda made: made.name)
-def test_it_is_the_robot_that_is_simulated(made: Robot, tmp_path: Path) -> None:
-    model, own = loaded(made, tmp_path), compile_visual_model(made)
-    joints = [joint.label for joint in legs_of(made).joints]
+@pytest.mark.parametrize("robot", [PRESETS["spider"], OWN], ids=lambda robot: robot.name)
+def test_it_is_the_robot_that_is_simulated(robot: Robot, tmp_path: Path) -> None:
+    model, visual = loaded(robot, tmp_path), compile_visual_model(robot)
+    joints = [joint.label for joint in legs_of(robot).joints]
 
     assert [model.actuator(number).name for number in range(model.nu)] == joints
-    assert model.opt.timestep == made.dt_s
+    assert model.opt.timestep == robot.dt_s
     for name in ("body_mass", "jnt_range", "dof_damping", "dof_armature", "geom_friction"):
-        assert getattr(model, name) == pytest.approx(getattr(own, name), rel=1e-5), name
+        assert getattr(model, name) == pytest.approx(getattr(visual, name), rel=1e-5), name
     for name in ("actuator_gainprm", "actuator_biasprm", "actuator_forcerange", "geom_size"):
-        assert getattr(model, name) == pytest.approx(getattr(own, name), rel=1e-5), name
+        assert getattr(model, name) == pytest.approx(getattr(visual, name), rel=1e-5), name
 
 
 def test_a_robot_that_no_named_gait_suits_has_a_model_too(tmp_path: Path) -> None:

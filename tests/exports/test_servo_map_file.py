@@ -36,8 +36,8 @@ def test_a_servo_has_its_pulse_at_zero_and_a_slope() -> None:
 
 def test_two_points_and_the_angle_that_they_call_zero_say_the_same() -> None:
     points = "board: 9, us_at_minus_45_deg: 1950, us_at_plus_45_deg: 1050"
-    own = {"leg1_coxa": "channel: 0", "leg1_tibia": "channel: 1, zero_deg: -90"}
-    servos = read(map_text(**{joint: f"{{{points}, {rest}}}" for joint, rest in own.items()}))
+    fields = {"leg1_coxa": "channel: 0", "leg1_tibia": "channel: 1, zero_deg: -90"}
+    servos = read(map_text(**{joint: f"{{{points}, {rest}}}" for joint, rest in fields.items()}))
     coxa, tibia = servos.servos[0], servos.servos[2]
     quarter = math.radians(45)
     assert coxa.pulses_us(np.array([-quarter, 0.0, quarter])) == pytest.approx([1950, 1500, 1050])
@@ -47,9 +47,9 @@ def test_two_points_and_the_angle_that_they_call_zero_say_the_same() -> None:
 
 def test_limits_and_speed_are_of_all_servos_or_of_one() -> None:
     place = "board: 9, channel: 0, us_at_zero: 1500, us_per_rad: 500"
-    own = f"{{{place}, limits_us: [600, 2400], speed_deg_s: 400}}"
+    fields = f"{{{place}, limits_us: [600, 2400], speed_deg_s: 400}}"
     read_map = read(
-        map_text("limits_us: [700, 2300]\nspeed_deg_s: 300\nspeed_share: 0.8", leg1_coxa=own)
+        map_text("limits_us: [700, 2300]\nspeed_deg_s: 300\nspeed_share: 0.8", leg1_coxa=fields)
     )
     first, second, *_ = read_map.servos
     assert (first.limits_us, first.speed_deg_s) == ((600, 2400), 400)
@@ -59,7 +59,7 @@ def test_limits_and_speed_are_of_all_servos_or_of_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         (
             map_text(leg2_femur=None),
@@ -127,9 +127,9 @@ def test_limits_and_speed_are_of_all_servos_or_of_one() -> None:
     ],
 )
 def test_what_is_wrong_is_said_with_its_line_and_what_is_valid(
-    text: str | bytes, told: str
+    text: str | bytes, message: str
 ) -> None:
-    assert told in refused(text)
+    assert message in refused(text)
 
 
 BOMB = "a: &a [x, x]\n" + "".join(
@@ -138,7 +138,7 @@ BOMB = "a: &a [x, x]\n" + "".join(
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         (BOMB, "line 2: not valid YAML: *a: aliases are not read; write the value out"),
         ("servos: &own\n  leg1_coxa: *own\n", "aliases are not read"),
@@ -156,11 +156,11 @@ BOMB = "a: &a [x, x]\n" + "".join(
     ],
 )
 def test_hostile_maps_are_refused_at_once_and_construct_nothing(
-    text: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    text: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     began = time.process_time()
-    assert told in refused(text)
+    assert message in refused(text)
     assert time.process_time() - began < 1
     assert not [*tmp_path.iterdir()]
 
@@ -205,7 +205,9 @@ def test_freenoves_maps_are_as_its_software_turns_the_servos(
             "tibia": -angles_deg["tibia"] if is_right else 180 + angles_deg["tibia"],
         }
         for (joint, turned_deg), channel in zip(degrees.items(), channels, strict=True):
-            servo = next(one for one in servos if one.joint == f"leg{leg}_{joint}")
+            servo = next(
+                candidate for candidate in servos if candidate.joint == f"leg{leg}_{joint}"
+            )
             place = (0x41, channel) if channel < 16 else (0x40, channel - 16)
             assert (servo.board, servo.channel) == place
             pulse = servo.pulses_us(np.radians([angles_deg[joint]]))
@@ -215,7 +217,7 @@ def test_freenoves_maps_are_as_its_software_turns_the_servos(
 def test_the_map_in_the_document_is_one_of_a_leg() -> None:
     document = (Path(__file__).parents[2] / "docs" / "servos.md").read_text("utf-8")
     example = document.partition("```yaml\n")[2].partition("```")[0]
-    found = read_servo_map(example.encode(), "servos.md", JOINTS[:3])
-    assert found.servos[0] == Servo("leg1_coxa", 0, 0, 1500, -573, (500, 2500), 353)
+    servo_map = read_servo_map(example.encode(), "servos.md", JOINTS[:3])
+    assert servo_map.servos[0] == Servo("leg1_coxa", 0, 0, 1500, -573, (500, 2500), 353)
     for name in BUILT_IN_MAPS:
         assert f"`{name}`" in document

@@ -67,7 +67,7 @@ def test_a_practice_begins_after_its_gap(parts: StageParts) -> None:
 
 def test_servos_that_cannot_follow_are_named_and_slowed_down(raced: RecordedWalks) -> None:
     as_recorded = servo_walk(raced, servo_map("speed_deg_s: 100"))
-    fastest = max(as_recorded.speeds, key=lambda one: one.needed_deg_s)
+    fastest = max(as_recorded.speeds, key=lambda speed: speed.needed_deg_s)
     usable = pytest.approx(70)
 
     assert as_recorded.too_slow[0].servo.joint == fastest.servo.joint

@@ -32,16 +32,18 @@ def test_rows_of_csv_are_the_recorded_frames_to_the_last_bit(raced: RecordedWalk
     assert head[2:7] == ["time_s", "body_x_m", "body_y_m", "body_z_m", "body_qw"]
     joints = 3 * len(robot.legs)
     for number, lane in enumerate(raced.lanes):
-        own = [row for row in rows if row[0] == str(number)]
+        rows_of_lane = [row for row in rows if row[0] == str(number)]
         motions = [lane.motion(index) for index in range(6)]
         recorded = np.concatenate([lane.start_qpos[None], *(motion.qpos for motion in motions)])
-        written = np.array([row[3 : 10 + joints] for row in own], np.float32)
+        written = np.array([row[3 : 10 + joints] for row in rows_of_lane], np.float32)
         assert np.array_equal(written, recorded)
-        times = [0.0, *(k * step_s + t for k, one in enumerate(motions) for t in one.time_s)]
-        assert np.array([float(row[2]) for row in own]) == pytest.approx(times, abs=1e-5)
-        assert [row[1] for row in own][:2] == ["0", "1"]
-        feet = np.array([row[10 + joints : 10 + 2 * joints] for row in own], float)
-        expected = legs_of(robot).foot_positions(recorded.astype(float)).reshape(len(own), -1)
+        times = [0.0, *(k * step_s + t for k, motion in enumerate(motions) for t in motion.time_s)]
+        assert np.array([float(row[2]) for row in rows_of_lane]) == pytest.approx(times, abs=1e-5)
+        assert [row[1] for row in rows_of_lane][:2] == ["0", "1"]
+        feet = np.array([row[10 + joints : 10 + 2 * joints] for row in rows_of_lane], float)
+        expected = (
+            legs_of(robot).foot_positions(recorded.astype(float)).reshape(len(rows_of_lane), -1)
+        )
         assert feet == pytest.approx(expected, abs=2e-6)
 
 

@@ -15,13 +15,13 @@ def each_stance_is_searched_once() -> Iterator[None]:
 
     Most tests read the same robot with another detail, and the search takes nearly all the time.
     """
-    search, kept = stance.search, dict[bytes, list[np.ndarray]]()
+    search, stances = stance.search, dict[bytes, list[np.ndarray]]()
 
     def kept_search(robot: stance.RobotWithLegs) -> stance.Angles:
         key = pickle.dumps(robot)
-        if key not in kept:
-            kept[key] = search(robot)
-        return [angles.copy() for angles in kept[key]]
+        if key not in stances:
+            stances[key] = search(robot)
+        return [angles.copy() for angles in stances[key]]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stance, "search", kept_search)

@@ -56,7 +56,7 @@ def repeat(data: bytes, rng: np.random.Generator) -> bytes:
 
 
 def change_attributes(data: bytes, rng: np.random.Generator) -> bytes:
-    return _replaced(_ATTRIBUTE, data, rng, lambda found, word: found[1] + b'="' + word + b'"')
+    return _replaced(_ATTRIBUTE, data, rng, lambda match, word: match[1] + b'="' + word + b'"')
 
 
 def change_numbers(data: bytes, rng: np.random.Generator) -> bytes:
@@ -64,13 +64,15 @@ def change_numbers(data: bytes, rng: np.random.Generator) -> bytes:
 
 
 def swap_attributes(data: bytes, rng: np.random.Generator) -> bytes:
-    found = list(_ATTRIBUTE.finditer(data))
-    if len(found) < 2:
+    matches = list(_ATTRIBUTE.finditer(data))
+    if len(matches) < 2:
         return data
-    first, second = sorted(rng.choice(len(found), 2, replace=False).tolist())
-    one, other = found[first], found[second]
-    between = data[one.end(2) : other.start(2)]
-    swapped: bytes = data[: one.start(2)] + other[2] + between + one[2] + data[other.end(2) :]
+    first, second = sorted(rng.choice(len(matches), 2, replace=False).tolist())
+    earlier, later = matches[first], matches[second]
+    between = data[earlier.end(2) : later.start(2)]
+    swapped: bytes = (
+        data[: earlier.start(2)] + later[2] + between + earlier[2] + data[later.end(2) :]
+    )
     return swapped
 
 
@@ -79,13 +81,13 @@ def delete_elements(data: bytes, rng: np.random.Generator) -> bytes:
 
 
 def double_elements(data: bytes, rng: np.random.Generator) -> bytes:
-    return _replaced(_ELEMENT, data, rng, lambda found, _: found[0] * 2)
+    return _replaced(_ELEMENT, data, rng, lambda match, _: match[0] * 2)
 
 
 def rename_elements(data: bytes, rng: np.random.Generator) -> bytes:
-    tags = [found[1] for found in _ELEMENT.finditer(data)]
+    tags = [match[1] for match in _ELEMENT.finditer(data)]
     other = tags[int(rng.integers(len(tags)))] if tags else b"geom"
-    return _replaced(_ELEMENT, data, rng, lambda found, _: found[0].replace(found[1], other, 1))
+    return _replaced(_ELEMENT, data, rng, lambda match, _: match[0].replace(match[1], other, 1))
 
 
 def _replaced(
@@ -95,14 +97,14 @@ def _replaced(
     by: Callable[[re.Match[bytes], bytes], bytes],
 ) -> bytes:
     """Replace one to four matches."""
-    found = list(pattern.finditer(data))
-    if not found:
+    matches = list(pattern.finditer(data))
+    if not matches:
         return data
-    chosen = rng.choice(len(found), min(len(found), int(rng.integers(1, 5))), replace=False)
+    chosen = rng.choice(len(matches), min(len(matches), int(rng.integers(1, 5))), replace=False)
     for number in sorted(chosen.tolist(), reverse=True):
-        one = found[number]
+        match = matches[number]
         word = _WORDS[int(rng.integers(len(_WORDS)))].encode()
-        data = data[: one.start()] + by(one, word) + data[one.end() :]
+        data = data[: match.start()] + by(match, word) + data[match.end() :]
     return data
 
 
@@ -120,14 +122,16 @@ ANYWHERE: tuple[Damage, ...] = (flip_bits, cut_off, cut_out, repeat)
 def damaged(count: int, rng: np.random.Generator) -> list[tuple[str, bytes]]:
     """Return damaged files, and what was done to each."""
     files = originals()
-    found = []
+    files_with_damage = []
     for number in range(count):
         original = files[number % len(files)]
         is_text = original.startswith(b"<")
         kinds = (*IN_TEXT, *ANYWHERE) if is_text else (*ANYWHERE, _inside)
         damage = kinds[int(rng.integers(len(kinds)))]
-        found.append((f"{damage.__name__} of file {number % len(files)}", damage(original, rng)))
-    return found
+        files_with_damage.append(
+            (f"{damage.__name__} of file {number % len(files)}", damage(original, rng))
+        )
+    return files_with_damage
 
 
 def _inside(data: bytes, rng: np.random.Generator) -> bytes:

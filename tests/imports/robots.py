@@ -183,7 +183,7 @@ def zipped(files: Mapping[str, Any]) -> bytes:
 def box_triangles(sides: Sequence[float], cells: int = 1) -> np.ndarray:
     """Return the triangles of a box around the origin, (n, 3, 3), each side divided into cells."""
     steps = np.linspace(-0.5, 0.5, cells + 1)
-    found = []
+    triangles = []
     for axis in range(3):
         for side in (-0.5, 0.5):
             for i in range(cells):
@@ -194,8 +194,8 @@ def box_triangles(sides: Sequence[float], cells: int = 1) -> np.ndarray:
                     corners[:, (axis + 2) % 3] = steps[[j, j, j + 1, j + 1]]
                     if side < 0:
                         corners = corners[::-1]
-                    found += [corners[[0, 1, 2]], corners[[0, 2, 3]]]
-    return np.array(found) * sides
+                    triangles += [corners[[0, 1, 2]], corners[[0, 2, 3]]]
+    return np.array(triangles) * sides
 
 
 def stl(triangles: np.ndarray) -> bytes:

@@ -33,13 +33,13 @@ def posed(
     frames: list[tuple[FloatArray, FloatArray]] = [(np.eye(3), np.zeros(3))]
     for link in model.links[1:]:
         turned, at = frames[link.parent]
-        own, origin = turned @ rotation(link.wxyz), at + turned @ link.at_m
+        rotation_of_link, origin = turned @ rotation(link.wxyz), at + turned @ link.at_m
         if link.joint is not None:
             by = turn(np.array(link.joint.axis), angles[link.leg, link.joint.name])
             anchor = np.array(link.joint.anchor_m)
-            origin = origin + own @ (anchor - by @ anchor)
-            own = own @ by
-        frames.append((own, origin))
+            origin = origin + rotation_of_link @ (anchor - by @ anchor)
+            rotation_of_link = rotation_of_link @ by
+        frames.append((rotation_of_link, origin))
     return frames
 
 
@@ -90,18 +90,18 @@ def compare(
         angles = {}
         mujoco.mj_resetData(model, data)
         for number, leg in enumerate(robot.legs, start=1):
-            for name, own in zip(leg.joints, robot.model.joints_of(number), strict=True):
-                angle = float(rng.uniform(*own.limits_rad))
-                angles[number, own.name] = angle
+            for name, joint in zip(leg.joints, robot.model.joints_of(number), strict=True):
+                angle = float(rng.uniform(*joint.limits_rad))
+                angles[number, joint.name] = angle
                 data.joint(name).qpos[0] = angle
         mujoco.mj_forward(model, data)
         root = data.body(is_base)
         feet, center = feet_and_center(robot, angles)
-        theirs = np.array([data.geom(foot_of[leg.foot]).xpos for leg in robot.legs])
-        theirs = np.vstack([theirs, data.subtree_com[model.body(is_base).id]])
-        inside = (theirs - root.xpos) @ axes.T
-        ours = np.vstack([feet, center])
+        expected = np.array([data.geom(foot_of[leg.foot]).xpos for leg in robot.legs])
+        expected = np.vstack([expected, data.subtree_com[model.body(is_base).id]])
+        inside = (expected - root.xpos) @ axes.T
+        actual = np.vstack([feet, center])
         # The origins differ by a shift that is always the same.
-        offset = (ours - inside).mean(axis=0) if offset is None else offset
-        worst = max(worst, float(np.abs(ours - inside - offset).max()))
+        offset = (actual - inside).mean(axis=0) if offset is None else offset
+        worst = max(worst, float(np.abs(actual - inside - offset).max()))
     return worst

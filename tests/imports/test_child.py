@@ -18,9 +18,9 @@ NAME = "robot import"
 
 def children() -> list[psutil.Process]:
     return [
-        one
-        for one in psutil.process_iter(["name", "username"])
-        if one.info["name"] == NAME and one.pid in _descendants()
+        process
+        for process in psutil.process_iter(["name", "username"])
+        if process.info["name"] == NAME and process.pid in _descendants()
     ]
 
 
@@ -102,9 +102,9 @@ def test_what_takes_too_much_memory_is_given_up(temporary: Path) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="the name of a process is set on Linux")
 def test_a_child_that_is_killed_is_told() -> None:
     def kill() -> None:
-        while not (found := children()):
+        while not (processes := children()):
             time.sleep(0.005)
-        found[0].kill()
+        processes[0].kill()
 
     killer = threading.Thread(target=kill)
     killer.start()

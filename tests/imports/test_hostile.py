@@ -9,7 +9,7 @@ NESTED = '<replicate count="60">' * 3 + '<geom size="0.01"/>' + "</replicate>" *
 
 
 @pytest.mark.parametrize(
-    ("part", "said"),
+    ("section", "said"),
     [
         ('<include file="/etc/passwd"/>', "it includes another file"),
         (f"<worldbody>{NESTED}</worldbody>", "copies by <replicate> are not made"),
@@ -40,9 +40,9 @@ NESTED = '<replicate count="60">' * 3 + '<geom size="0.01"/>' + "</replicate>" *
         ('<worldbody><body name="trunk"/></worldbody>', "MuJoCo refuses the file"),
     ],
 )
-def test_what_a_robot_must_not_have_is_refused(part: str, said: str) -> None:
+def test_what_a_robot_must_not_have_is_refused(section: str, said: str) -> None:
     with pytest.raises(InvalidInput, match=re.escape(said)):
-        read(dog(sections=part))
+        read(dog(sections=section))
 
 
 def test_the_line_is_that_of_the_file() -> None:
@@ -54,7 +54,7 @@ def test_the_line_is_that_of_the_file() -> None:
 
 
 @pytest.mark.parametrize(
-    "part",
+    "section",
     [
         '<asset><texture name="t" file="/etc/passwd"/><material name="m" texture="t"/></asset>',
         '<asset><texture name="t" builtin="flat" width="100000" height="100000"/></asset>',
@@ -66,8 +66,8 @@ def test_the_line_is_that_of_the_file() -> None:
         '<sensor><user dim="1000000000"/></sensor>',
     ],
 )
-def test_what_is_no_body_is_left_out(part: str) -> None:
-    assert len(read(dog(sections=part)).legs) == 4
+def test_what_is_no_body_is_left_out(section: str) -> None:
+    assert len(read(dog(sections=section)).legs) == 4
 
 
 @pytest.mark.parametrize("path", ["../../../etc/passwd", "/etc/passwd"])

@@ -50,7 +50,7 @@ def encrypted() -> bytes:
         (b"PK\3\4", "has no directory"),
     ],
     # Files have the time at which they are made: as names they would differ between processes.
-    ids=lambda one: one if isinstance(one, str) else "",
+    ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_hostile_zips_are_refused(data: bytes, said: str) -> None:
     with pytest.raises(DamagedFile, match=re.escape(said)):
@@ -82,7 +82,7 @@ def files() -> Upload:
 
 
 @pytest.mark.parametrize(
-    ("wanted", "found"),
+    ("wanted", "path"),
     [
         ("../meshes/hip.stl", "pkg/meshes/hip.stl"),
         ("package://pkg/meshes/hip.stl", "pkg/meshes/hip.stl"),
@@ -94,9 +94,9 @@ def files() -> Upload:
     ],
 )
 def test_a_mesh_is_found_by_the_most_of_its_path(
-    files: Upload, wanted: str, found: str | None
+    files: Upload, wanted: str, path: str | None
 ) -> None:
-    assert files.find(wanted, "pkg/urdf/a.urdf") == found
+    assert files.find(wanted, "pkg/urdf/a.urdf") == path
 
 
 @pytest.mark.parametrize(

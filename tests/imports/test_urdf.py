@@ -217,10 +217,10 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
         "broken.xml": "<mujoco>",
     }
 
-    found, chosen = read(zipped(files)), read(zipped(files), choices=Choices(file="small.urdf"))
+    best, chosen = read(zipped(files)), read(zipped(files), choices=Choices(file="small.urdf"))
 
-    assert (found.file, len(found.legs)) == ("bug.urdf", 6)
-    assert told(found.guesses, "the robot is bug.urdf, not: scene.xml, small.urdf")
+    assert (best.file, len(best.legs)) == ("bug.urdf", 6)
+    assert told(best.guesses, "the robot is bug.urdf, not: scene.xml, small.urdf")
     assert (chosen.file, len(chosen.legs)) == ("small.urdf", 4)
     with pytest.raises(InvalidInput, match=r"the zip has no 'big\.urdf'"):
         read(zipped(files), choices=Choices(file="big.urdf"))

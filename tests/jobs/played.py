@@ -20,17 +20,17 @@ def played_job(
 
     An outage of the database is not waited out.
     """
-    given: list[Callable[[Message], None]] = []
+    handlers: list[Callable[[Message], None]] = []
 
     class NeverStarted(WorkerProcess):
         def __init__(
             self, name: str, task: Task, on_message: Callable[[Message], None], niceness: int
         ) -> None:
             super().__init__(name, task, on_message, niceness)
-            given.append(on_message)
+            handlers.append(on_message)
 
     shutdown = threading.Event()
     shutdown.set()
     with mock.patch("app.jobs.job.WorkerProcess", NeverStarted):
         job = Job(run, task, store, Recordings(store), bus, shutdown=shutdown, niceness=0)
-    return job, given[0]
+    return job, handlers[0]

@@ -33,8 +33,8 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Served]]:
 def fork_server(server: Served) -> psutil.Process:
     """Return the first one, or one that was started in its place."""
     children = psutil.Process(server.process.pid).children()
-    (found,) = [child for child in children if is_fork_server(child)]
-    return found
+    (process,) = [child for child in children if is_fork_server(child)]
+    return process
 
 
 def is_fork_server(process: psutil.Process) -> bool:

@@ -47,7 +47,7 @@ def endless() -> TrainingStart:
 def pid_of(run: Run) -> int:
     """Return the id of the process that computes a run."""
     name = f"{run.kind} {run.id}"
-    (pid,) = (one.pid for one in multiprocessing.active_children() if one.name == name)
+    (pid,) = (process.pid for process in multiprocessing.active_children() if process.name == name)
     assert pid is not None
     return pid
 
@@ -112,9 +112,9 @@ def test_runs_that_live_and_wait_are_renamed_for_good(store: RunStore) -> None:
         wait_until(lambda: store.get(live.id).done > done + 3)
         jobs.stop(live.id)
         wait_until_ended(store, waiting)
-        told = [json.loads(event.data) for event in events.drain() if event.event == "run"]
-        assert {run["id"] for run in told} == {live.id, waiting.id}
-        assert all((run["name"], run["tags"]) == ("after", ["ice"]) for run in told)
+        run_events = [json.loads(event.data) for event in events.drain() if event.event == "run"]
+        assert {run["id"] for run in run_events} == {live.id, waiting.id}
+        assert all((run["name"], run["tags"]) == ("after", ["ice"]) for run in run_events)
         assert [run.name for run in store.list().runs] == ["after", "after"]
     finally:
         jobs.close()

@@ -54,7 +54,7 @@ def test_what_fails_or_takes_too_long_fails_one_request_only() -> None:
         pool.map(int, ["x"])
     # Which of them, and its words, depend on the version of Python.
     with pytest.raises((AttributeError, pickle.PicklingError), match="local object"):
-        pool.map(lambda one: one, [1])
+        pool.map(lambda value: value, [1])
     assert pool.map(abs, [-1]) == [1]
     # More than the processes take at once, so that some calls are cancelled before they begin.
     with pytest.raises(TookTooLong, match="it took over 1 s"):

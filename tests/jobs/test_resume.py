@@ -132,7 +132,7 @@ def test_race_that_was_stopped_is_repeated_to_its_end(
         jobs.resume(race.id)
     ended = wait_until_ended(store, race)
     assert ended.state == "finished"
-    results = [one.result for one in (ended, unbroken)]
+    results = [finished_run.result for finished_run in (ended, unbroken)]
     assert all(isinstance(result, RaceResult) for result in results)
     first, second = (
         result.recording_sha256 for result in results if isinstance(result, RaceResult)
@@ -217,8 +217,12 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
             for change in ended.changes:
                 if change["step"] == record.step and "disturbance" in change:
                     unbroken.disturb(disturbance_from(change["disturbance"]), config)
-    made = [disturbance_from(one["disturbance"]) for one in ended.changes if "disturbance" in one]
-    assert made == happened == list(unbroken.world.disturbances)
+    disturbances = [
+        disturbance_from(change["disturbance"])
+        for change in ended.changes
+        if "disturbance" in change
+    ]
+    assert disturbances == happened == list(unbroken.world.disturbances)
     assert 0 < happened[0].at_step < happened[1].at_step < 200
     assert ended.result == training_result(unbroken, config)
 

@@ -27,23 +27,23 @@ def answer_schemas(document: dict[str, Any]) -> dict[str, Any]:
         for status, response in operation["responses"].items()
         if int(status) < 400
     ]
-    waiting, found = [_EVENTS, *_references(successes)], set[str]()
+    waiting, names = [_EVENTS, *_references(successes)], set[str]()
     while waiting:
         name = waiting.pop()
-        if name not in found:
-            found.add(name)
+        if name not in names:
+            names.add(name)
             waiting += _references(schemas[name])
-    return {name: schemas[name] for name in sorted(found)}
+    return {name: schemas[name] for name in sorted(names)}
 
 
-def _references(part: Any) -> Iterator[str]:
-    if isinstance(part, dict):
-        if isinstance(reference := part.get("$ref"), str):
+def _references(document: Any) -> Iterator[str]:
+    if isinstance(document, dict):
+        if isinstance(reference := document.get("$ref"), str):
             yield reference.rpartition("/")[2]
-        part = list(part.values())
-    if isinstance(part, list):
-        for one in part:
-            yield from _references(one)
+        document = list(document.values())
+    if isinstance(document, list):
+        for member in document:
+            yield from _references(member)
 
 
 if __name__ == "__main__":

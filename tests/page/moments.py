@@ -58,11 +58,11 @@ class Races:
         fields = {"simulator": "mujoco", **fields}
         run, advance = parts.running_race(tuple(agents), STEPS, **fields)
         parts.store.update(run.id, started_at=datetime.now(UTC), name=name)
-        made = 0
-        while made != records and advance():
-            made += 1
-            if made == fails:
-                parts.recordings.add(run.id, LaneFailed(0, 1 + made // len(agents), "it broke"))
+        recorded = 0
+        while recorded != records and advance():
+            recorded += 1
+            if recorded == fails:
+                parts.recordings.add(run.id, LaneFailed(0, 1 + recorded // len(agents), "it broke"))
                 break
         lanes = parts.recordings.race(run.id)
         assert lanes is not None
@@ -77,8 +77,10 @@ class Races:
         )
         parts.publish(run)
         for clock in clocks:
-            told = json.loads(json.dumps(timeline(lanes, (None,) * len(lanes), STEPS, clock)))
-            self._show(run, clock, told)
+            race_timeline = json.loads(
+                json.dumps(timeline(lanes, (None,) * len(lanes), STEPS, clock))
+            )
+            self._show(run, clock, race_timeline)
         return run
 
     def practice(
@@ -110,31 +112,35 @@ class Races:
         self._show(run, "paper", None, tests)
 
     def _show(
-        self, run: Run, clock: Clock, told: dict[str, Any] | None, tests: Sequence[object] = ()
+        self,
+        run: Run,
+        clock: Clock,
+        race_timeline: dict[str, Any] | None,
+        tests: Sequence[object] = (),
     ) -> None:
         stage = self._parts.stage
         stage.set(run_id=run.id, clock=clock, playing=False)
         moments = []
-        for time_s, ends_at_time_out in self._times(told):
+        for time_s, ends_at_time_out in self._times(race_timeline):
             stage.set(end_at_time_out=ends_at_time_out, time_s=time_s)
             self._parts.next_frame()
             moments.append({"stage": stage.state(), "scene": stage.scene()})
         view = json.loads(json.dumps(run_view(run), default=str))
         self.entries.append(
-            {"run": view, "timeline": told, "tests": list(tests), "moments": moments}
+            {"run": view, "timeline": race_timeline, "tests": list(tests), "moments": moments}
         )
 
-    def _times(self, told: dict[str, Any] | None) -> Iterator[tuple[float, bool]]:
+    def _times(self, race_timeline: dict[str, Any] | None) -> Iterator[tuple[float, bool]]:
         """Moments of a run: its start and end, ends of steps as pages name them, and others [s]."""
         chance = self._chance
-        if told is None:
+        if race_timeline is None:
             yield from (
                 (time_s, True) for time_s in (0.0, *sorted(chance.uniform(0, 48) for _ in range(8)))
             )
             yield 1e6, True
             return
-        ends = sorted({t for lane in told["lanes"] for t, _ in lane["points"]})
-        time_out_s = told["first_finish_s"]
+        ends = sorted({t for lane in race_timeline["lanes"] for t, _ in lane["points"]})
+        time_out_s = race_timeline["first_finish_s"]
         yield 0.0, True
         for time_s in chance.sample(ends, min(4, len(ends))):
             yield round(time_s, 3), False

@@ -155,7 +155,7 @@ def test_ground_after_bumps_is_where_it_was() -> None:
     row = state.row.copy()
     row[2] -= ROUGH_PERIOD_M
     moved = replace(state, row=row, origin_m=(0.0, ROUGH_PERIOD_M))
-    ends = [simulator.step(one, Action(1, 2)).state for one in (state, moved)]
+    ends = [simulator.step(start, Action(1, 2)).state for start in (state, moved)]
 
     assert ends[0].distance_m == pytest.approx(ends[1].distance_m, abs=1e-9)
     assert ends[1].origin_m == (0.0, 0.0)
@@ -163,7 +163,7 @@ def test_ground_after_bumps_is_where_it_was() -> None:
 
 def test_a_push_moves_the_robot_in_its_direction_and_is_not_foreseen() -> None:
     calm, pushed = build(), build(Push(impulse_ns=2, direction_deg=90, at_step=1))
-    before, after = (walk(one, 2) for one in (calm, pushed))
+    before, after = (walk(simulator, 2) for simulator in (calm, pushed))
 
     assert (before[1].row == after[1].row).all()
     assert after[2].row[1] < before[2].row[1] - 0.005  # to the left is −x
@@ -206,12 +206,12 @@ def test_rough_ground_repeats_and_follows_its_seed() -> None:
 
 def test_a_walk_over_rough_ground_goes_on_after_a_period() -> None:
     simulator = build(Rough(amplitude_m=0.01))
-    here = simulator.rest()
-    row = here.row.copy()
+    start = simulator.rest()
+    row = start.row.copy()
     row[2] += ROUGH_PERIOD_M
-    there = MujocoState(row, here.feet, here.distance_m + ROUGH_PERIOD_M)
+    period_later = MujocoState(row, start.feet, start.distance_m + ROUGH_PERIOD_M)
 
-    near, far = (simulator.step(s, Action(0, 2), record=True) for s in (here, there))
+    near, far = (simulator.step(s, Action(0, 2), record=True) for s in (start, period_later))
 
     assert far.reward_m == pytest.approx(near.reward_m, abs=1e-9)
     assert far.state.distance_m == pytest.approx(near.state.distance_m + ROUGH_PERIOD_M)
@@ -247,8 +247,8 @@ def test_look_ahead_of_many_steps_equals_single_steps_at_any_thread_count() -> N
 
     for threads in (1, 2):
         together = build(*EVENTFUL, threads=threads).expand(states, actions)
-        for one, other in zip(singles, together.states, strict=True):
-            assert (one.row == other.row).all()
+        for single, batched in zip(singles, together.states, strict=True):
+            assert (single.row == batched.row).all()
 
 
 def test_a_search_can_hold_the_conditions_of_one_step() -> None:

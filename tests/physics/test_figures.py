@@ -81,13 +81,13 @@ def test_the_default_robot_covers_half_a_metre_in_every_gait(
 def test_compliant_servos_let_the_body_pitch_in_left_right_vertical(
     greedy_m: dict[tuple[str, str], float],
 ) -> None:
-    others = [
+    other_gaits_m = [
         metres
         for (name, gait), metres in greedy_m.items()
         if name == "compliant" and gait != EXCEPTIONAL
     ]
 
-    assert greedy_m["compliant", EXCEPTIONAL] < 0.8 * min(others)
+    assert greedy_m["compliant", EXCEPTIONAL] < 0.8 * min(other_gaits_m)
 
 
 LEARNERS = {
@@ -105,8 +105,8 @@ def learned_m() -> dict[str, FloatArray]:
         for gait, preset in LEARNERS.values()
         for seed in SEEDS
     ]
-    found = np.array(in_a_pool(practise, configs)).reshape(len(LEARNERS), len(SEEDS))
-    return dict(zip(LEARNERS, found, strict=True))
+    distances = np.array(in_a_pool(practise, configs)).reshape(len(LEARNERS), len(SEEDS))
+    return dict(zip(LEARNERS, distances, strict=True))
 
 
 SPANS_M = {

@@ -40,13 +40,13 @@ def test_it_has_a_free_torso_and_eighteen_servos(model: Any) -> None:
 
 
 def test_masses_are_those_of_the_robot(model: Any) -> None:
-    parts = {"torso": 1.2, "coxa": 0.06, "femur": 0.06, "tibia": 0.03, "foot": 0.01}
+    masses = {"torso": 1.2, "coxa": 0.06, "femur": 0.06, "tibia": 0.03, "foot": 0.01}
 
     assert model.body_mass.sum() == pytest.approx(2.16)
     assert model.body("torso").mass == pytest.approx(1.2)
     for leg in range(1, 7):
-        for part in ("coxa", "femur", "tibia", "foot"):
-            assert model.body(f"leg{leg}_{part}").mass == pytest.approx(parts[part])
+        for link in ("coxa", "femur", "tibia", "foot"):
+            assert model.body(f"leg{leg}_{link}").mass == pytest.approx(masses[link])
 
 
 def test_inertias_are_those_of_the_collision_shapes(model: Any) -> None:
@@ -84,19 +84,19 @@ def test_what_is_only_drawn_has_no_mass_and_is_not_simulated(model: Any) -> None
 
 @pytest.mark.parametrize("name", ["stiff", "compliant", "slippery"])
 def test_servos_friction_and_time_are_the_robots(name: str) -> None:
-    made = robot(name)
-    model = compile_model(made)
+    preset = robot(name)
+    model = compile_model(preset)
 
     assert model.opt.timestep == 0.004
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    assert (model.actuator_gainprm[:, 0] == made.servo_kp).all()
-    assert (model.actuator_biasprm[:, 1] == -made.servo_kp).all()
-    assert (model.actuator_biasprm[:, 2] == -made.servo_kv).all()
+    assert (model.actuator_gainprm[:, 0] == preset.servo_kp).all()
+    assert (model.actuator_biasprm[:, 1] == -preset.servo_kp).all()
+    assert (model.actuator_biasprm[:, 2] == -preset.servo_kv).all()
     assert (model.actuator_forcerange == (-1.5, 1.5)).all()
     assert model.actuator_forcelimited.all()
     assert (model.dof_armature[6:] == 0.002).all()
     assert (model.dof_damping[6:] == 0.05).all()
-    assert model.geom("leg4_foot").friction[0] == made.friction
+    assert model.geom("leg4_foot").friction[0] == preset.friction
     assert model.geom("leg4_foot").priority > model.geom("ground").priority
 
 
@@ -150,7 +150,7 @@ def test_the_number_of_legs_is_a_parameter(legs: int) -> None:
 
 
 def test_links_masses_and_torso_scale_with_the_robot() -> None:
-    made = robot(
+    scaled = robot(
         {
             "coxa_m": 0.04,
             "femur_m": 0.1,
@@ -162,7 +162,7 @@ def test_links_masses_and_torso_scale_with_the_robot() -> None:
             "mount_radius_m": 0.12,
         }
     )
-    model = compile_model(made)
+    model = compile_model(scaled)
 
     assert model.body("leg2_femur").pos == pytest.approx((0.04, 0, 0))
     assert model.body("leg2_tibia").pos == pytest.approx((0.1, 0, 0))

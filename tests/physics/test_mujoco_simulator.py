@@ -23,13 +23,13 @@ from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
 
 def build(
     gait: str = "left-right-origin",
-    made: Robot | None = None,
+    robot: Robot | None = None,
     threads: int = 1,
     reward: RewardKind = "forward",
 ) -> MujocoSimulator:
-    made = made or Robot()
-    gait_of_it = resolve(gait, made.azimuths_deg)
-    return MujocoSimulator(made, gait_of_it, FootGrid(), threads, reward=reward)
+    robot = robot or Robot()
+    gait_of_it = resolve(gait, robot.azimuths_deg)
+    return MujocoSimulator(robot, gait_of_it, FootGrid(), threads, reward=reward)
 
 
 def layer(simulator: MujocoSimulator) -> tuple[list[MujocoState], list[Action]]:
@@ -83,22 +83,22 @@ def test_the_home_pose_stands_still(gait: str, preset: str) -> None:
 
 @pytest.mark.parametrize("gait", PAPER_GAITS)
 def test_forward_kinematics_in_the_world_are_those_of_the_model(gait: str) -> None:
-    made = robot({"n_legs": 8, "coxa_m": 0.04, "mount_radius_m": 0.12})
-    simulator = build(gait, made)
+    body = robot({"n_legs": 8, "coxa_m": 0.04, "mount_radius_m": 0.12})
+    simulator = build(gait, body)
     data = mujoco.MjData(simulator.model)
     rng = np.random.default_rng(0)
     data.qpos[:] = [0.3, -2.0, 0.2, *rng.normal(size=4), *rng.uniform(-1, 0, 24)]
     data.qpos[3:7] /= np.linalg.norm(data.qpos[3:7])
     mujoco.mj_kinematics(simulator.model, data)
 
-    assert legs_of(made).foot_positions(data.qpos[None])[0] == pytest.approx(
+    assert legs_of(body).foot_positions(data.qpos[None])[0] == pytest.approx(
         feet_of(data, 8), abs=1e-9
     )
 
 
 @pytest.mark.parametrize("legs", [4, 6, 8])
 def test_feet_stand_on_the_ground_and_do_not_sink(legs: int) -> None:
-    simulator = build(made=robot({"n_legs": legs}))
+    simulator = build(robot=robot({"n_legs": legs}))
     data = data_at(simulator, simulator.rest())
 
     assert data.ncon == legs
@@ -140,7 +140,7 @@ def test_the_torso_stays_level_and_on_course_with_stiff_servos() -> None:
 
 def test_reward_is_measured_not_commanded() -> None:
     """With low friction the feet slip, so that the body moves less than planned."""
-    gripping, slipping = build(), build(made=Robot(friction=0.02))
+    gripping, slipping = build(), build(robot=Robot(friction=0.02))
     firm, loose = (s.step(s.rest(), Action(0, 1)).reward_m for s in (gripping, slipping))
 
     assert firm == pytest.approx(0.02 / 3, rel=0.1)

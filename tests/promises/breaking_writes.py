@@ -86,11 +86,11 @@ class Breaker:
         if self._how == "kill" and self.count == self.at:
             os.kill(os.getpid(), signal.SIGKILL)
 
-    def _audit(self, name: str, given: tuple[Any, ...]) -> None:
-        writes = name == "open" and isinstance(given[1], str) and given[1][:1] in "xwa"
+    def _audit(self, name: str, arguments: tuple[Any, ...]) -> None:
+        writes = name == "open" and isinstance(arguments[1], str) and arguments[1][:1] in "xwa"
         if not (writes or name in ("os.rename", "os.remove")):
             return
-        if not str(given[0]).startswith(self._artifacts):
+        if not str(arguments[0]).startswith(self._artifacts):
             return
         self._count()
         if self.is_full and writes:
@@ -156,8 +156,8 @@ def delete(store: RunStore, folder: Path) -> None:
 
 
 OPERATIONS: dict[str, Callable[[RunStore, Path], None]] = {
-    one.__name__: one
-    for one in (import_archive, import_experiment, import_table, start, finish, delete)
+    call.__name__: call
+    for call in (import_archive, import_experiment, import_table, start, finish, delete)
 }
 
 

@@ -7,13 +7,13 @@ from app.storage.database.opening import DATABASE_FILE
 
 def open_files(pid: int) -> list[str]:
     """Return the target of each open file descriptor of a process."""
-    found = []
+    targets = []
     for link in Path(f"/proc/{pid}/fd").iterdir():
         try:
-            found.append(str(link.readlink()))
+            targets.append(str(link.readlink()))
         except FileNotFoundError:
             continue  # closed in the meantime
-    return found
+    return targets
 
 
 def database_files(pid: int, data: Path) -> list[str]:

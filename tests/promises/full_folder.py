@@ -106,8 +106,8 @@ def _fill_rooms(store: RunStore, ended: int) -> str:
     rooms.show_card(code, 1)
     rooms.ask(code, 0, {"alpha": 0.5}, lambda: ANSWER, card=1)
     rooms.show_card(code, 0)
-    (asked,) = rooms.get(code).runs.values()
-    of_room: RoomRun = asked._replace(run_id=OF_ROOM, card=0, answer=None)
+    (room_run,) = rooms.get(code).runs.values()
+    of_room: RoomRun = room_run._replace(run_id=OF_ROOM, card=0, answer=None)
     RoomRows(store.database).add_runs([of_room])
     return code
 
@@ -127,5 +127,5 @@ def _fill_tournaments(store: RunStore, code: str) -> None:
     for number in tournament.entries:
         for draw in range(rules.draws):
             tournaments.keep(tournament, number, draw, Judgement(0.1 + draw / 10 + number))
-    judged = {one.number: one.in_order() for one in tournament.judged}
+    judged = {entry.number: entry.in_order() for entry in tournament.judged}
     tournaments.finish(tournament, outcome_of((rules, tournament.secret, judged)))

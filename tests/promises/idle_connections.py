@@ -79,20 +79,20 @@ def main(port: int, count: int, addresses: int, paths: Sequence[str]) -> None:
         IdleConnection(number, port, f"127.0.0.{1 + number % addresses}", paths)
         for number in range(count)
     ]
-    for one in connections:
-        one.open()
-    _emit(open=sum(one.sock is not None for one in connections))
+    for connection in connections:
+        connection.open()
+    _emit(open=sum(connection.sock is not None for connection in connections))
     came_back = 0
     while not select.select([sys.stdin], [], [], 1.0)[0]:
         _close_lost(connections)
-        away = [one for one in connections if one.sock is None]
-        for one in away[:REOPENED_PER_S]:
-            one.open()
-            came_back += one.sock is not None
+        away = [connection for connection in connections if connection.sock is None]
+        for connection in away[:REOPENED_PER_S]:
+            connection.open()
+            came_back += connection.sock is not None
         if int(time.monotonic()) % int(TRICKLE_S) == 0:
-            for one in connections:
-                one.trickle()
-    _emit(open=sum(one.sock is not None for one in connections), came_back=came_back)
+            for connection in connections:
+                connection.trickle()
+    _emit(open=sum(connection.sock is not None for connection in connections), came_back=came_back)
 
 
 def _emit(**figures: int) -> None:
@@ -103,9 +103,9 @@ def _emit(**figures: int) -> None:
 def _close_lost(connections: Sequence[IdleConnection]) -> None:
     """Close the connections that the server has closed, detected without reading (MSG_PEEK)."""
     with selectors.DefaultSelector() as selector:
-        for one in connections:
-            if one.sock is not None:
-                selector.register(one.sock, selectors.EVENT_READ, one)
+        for candidate in connections:
+            if candidate.sock is not None:
+                selector.register(candidate.sock, selectors.EVENT_READ, candidate)
         ready = selector.select(0) if selector.get_map() else []
     for key, _ in ready:
         connection: IdleConnection = key.data

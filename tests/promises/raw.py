@@ -47,12 +47,12 @@ def accesses() -> dict[Route, Access]:
     """Return the access of each of `every_route`, as its policy has it."""
     with temporary_store() as store:
         of_routes = policies(create_app(Settings(data=Path("unused")), store))
-    found: dict[Route, Access] = {}
+    by_route: dict[Route, Access] = {}
     for route in every_route():
         path = "/static" if route.path.startswith("/static/") else route.path
         method = "get" if route.method in ("HEAD", "WS") else route.method.lower()
-        found[route] = of_routes[method, re.sub(":(path|robot)}", "}", path)].access
-    return found
+        by_route[route] = of_routes[method, re.sub(":(path|robot)}", "}", path)].access
+    return by_route
 
 
 def send(port: int, *lines: str, body: bytes = b"", source: str = "127.0.0.1") -> bytes:
@@ -69,8 +69,8 @@ def send(port: int, *lines: str, body: bytes = b"", source: str = "127.0.0.1") -
         head = "\r\n".join([*lines, *end]) + "\r\n\r\n"
         sock.sendall(head.encode("latin-1") + body)
         answer = b""
-        while len(answer) < 1 << 16 and (part := sock.recv(1 << 16)):
-            answer += part
+        while len(answer) < 1 << 16 and (chunk := sock.recv(1 << 16)):
+            answer += chunk
             if answer.startswith(b"HTTP/1.1 101") or b"text/event-stream" in answer:
                 break  # an endless stream
         return answer

@@ -31,13 +31,17 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
         short["paths"][path]["post"] = copy.deepcopy(contract["paths"][path]["post"])
     _keep_once(_schema_of(short, DISTURBS)["anyOf"])
     robot = _schema_of(short, STORES_ROBOTS)["properties"]["robot"]
-    _keep_once([one for one in robot["anyOf"] if "properties" in one])
+    _keep_once([schema for schema in robot["anyOf"] if "properties" in schema])
     schemas = short["components"]["schemas"]
     settings = {
-        name: set(one["properties"]) for name, one in schemas.items() if name.endswith("Training")
+        name: set(schema["properties"])
+        for name, schema in schemas.items()
+        if name.endswith("Training")
     }
-    kept = set().union(*(names for name, names in settings.items() if name.startswith(AGENTS)))
-    for name in set().union(*settings.values()) - kept:
+    kept_names = set().union(
+        *(names for name, names in settings.items() if name.startswith(AGENTS))
+    )
+    for name in set().union(*settings.values()) - kept_names:
         schemas["ExperimentBody"]["properties"].pop(name, None)
     for kind in KINDS:
         _keep_once([schemas[agent + kind] for agent in AGENTS])
@@ -45,9 +49,9 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     _leave_out_what_has(walk, schemas["TournamentRulesBody"])
     gait = walk["properties"]["gait"]
     parts_of_gait = gait["anyOf"][1]
-    for one in _parts(short):
-        if one is not gait and parts_of_gait in one.get("anyOf", ()):
-            one["anyOf"].remove(parts_of_gait)
+    for schema in _parts(short):
+        if schema is not gait and parts_of_gait in schema.get("anyOf", ()):
+            schema["anyOf"].remove(parts_of_gait)
     _shorten_yaml(short)
     return short
 
@@ -69,9 +73,9 @@ def _shorten_yaml(short: dict[str, Any]) -> None:
 
 def _keep_once(bodies: list[dict[str, Any]]) -> None:
     """Leave out what the first of some bodies shows of the others."""
-    first, *others = bodies
-    for one in others:
-        _leave_out_what_has(first, one)
+    first, *later_bodies = bodies
+    for body in later_bodies:
+        _leave_out_what_has(first, body)
 
 
 def _leave_out_what_has(first: dict[str, Any], other: dict[str, Any]) -> None:
@@ -82,33 +86,37 @@ def _leave_out_what_has(first: dict[str, Any], other: dict[str, Any]) -> None:
             del other["properties"][name]
 
 
-def _parts(part: Any) -> list[dict[str, Any]]:
+def _parts(document: Any) -> list[dict[str, Any]]:
     """Return all objects of a document."""
-    if isinstance(part, list):
-        return [found for one in part for found in _parts(one)]
-    if not isinstance(part, dict):
+    if isinstance(document, list):
+        return [schema for member in document for schema in _parts(member)]
+    if not isinstance(document, dict):
         return []
-    return [part, *_parts(list(part.values()))]
+    return [document, *_parts(list(document.values()))]
 
 
-def _with_few_choices(part: Any) -> Any:
-    if isinstance(part, list):
-        return [_with_few_choices(one) for one in part]
-    if not isinstance(part, dict):
-        return part
-    short = {name: _with_few_choices(one) for name, one in part.items()}
+def _with_few_choices(document: Any) -> Any:
+    if isinstance(document, list):
+        return [_with_few_choices(item) for item in document]
+    if not isinstance(document, dict):
+        return document
+    short = {name: _with_few_choices(item) for name, item in document.items()}
     if any(_is_choice_of(AGENTS[0] + kind, short) for kind in KINDS):
-        short["oneOf"] = [one for one in short["oneOf"] if _name_of(one).startswith(AGENTS)]
-    if any(_is_robot(one) for one in short.get("anyOf", ())):
-        short["anyOf"] = [one for one in short["anyOf"] if not _is_robot(one)]
-    if any(_disturbance(one) for one in short.get("anyOf", ())):
-        short["anyOf"] = [one for one in short["anyOf"] if _disturbance(one) in DISTURBANCES]
+        short["oneOf"] = [
+            choice for choice in short["oneOf"] if _name_of(choice).startswith(AGENTS)
+        ]
+    if any(_is_robot(choice) for choice in short.get("anyOf", ())):
+        short["anyOf"] = [choice for choice in short["anyOf"] if not _is_robot(choice)]
+    if any(_disturbance(choice) for choice in short.get("anyOf", ())):
+        short["anyOf"] = [
+            choice for choice in short["anyOf"] if _disturbance(choice) in DISTURBANCES
+        ]
     return short
 
 
 def _is_choice_of(name: str, schema: dict[str, Any]) -> bool:
     """Tell whether a schema is a choice of several, of which one has this name."""
-    return name in {_name_of(one) for one in schema.get("oneOf", ())}
+    return name in {_name_of(choice) for choice in schema.get("oneOf", ())}
 
 
 def _name_of(reference: dict[str, str]) -> str:

@@ -83,6 +83,6 @@ def check(store: RunStore, acknowledged: dict[str, dict[str, int]]) -> None:
 def check_files(store: RunStore, folder: Path) -> None:
     """Check that every run has its one file, and that there are no orphaned files."""
     runs = store.list(limit=1_000_000).items
-    kept = sum(store.artifact(run.id, CHECKPOINT) is not None for run in runs)
-    assert len([path for path in folder.glob("artifacts/*/*") if path.is_file()]) == kept
+    file_count = sum(store.artifact(run.id, CHECKPOINT) is not None for run in runs)
+    assert len([path for path in folder.glob("artifacts/*/*") if path.is_file()]) == file_count
     assert all(run.state in ("finished", "interrupted") for run in runs)

@@ -46,7 +46,7 @@ def test_a_hundred_times_the_same_key_is_one_run(
     }
     with ThreadPoolExecutor(20 if together else 1) as pool:
         answers = [
-            one.result() for one in [pool.submit(start, api, **request) for _ in range(TIMES)]
+            future.result() for future in [pool.submit(start, api, **request) for _ in range(TIMES)]
         ]
 
     assert len(set(answers)) == 1
@@ -130,12 +130,12 @@ def test_a_key_survives_the_death_of_the_server(launch: Callable[..., Served]) -
 
 def number_of(server: Served, kind: str) -> int:
     """Count the runs of a kind, page by page."""
-    found, query = 0, ""
+    count, query = 0, ""
     while True:
         page = server.client.get(f"/api/v1/{kind}{query}").json()
-        found += len(page["items"])
+        count += len(page["items"])
         if page["next_cursor"] is None:
-            return found
+            return count
         query = f"?cursor={page['next_cursor']}"
 
 

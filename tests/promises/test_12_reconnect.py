@@ -104,8 +104,8 @@ def test_a_reconnecting_event_stream_misses_no_evaluation(
 
     assert steps == list(range(steps[0], steps[-1] + 1, EVERY))
     curve = httpx2.get(f"{server.address}api/v1/trainings/{training['id']}/curve").json()
-    kept = [row["step"] for row in curve["evaluations"]]
-    assert kept[: len(steps)] == steps
+    stored_steps = [row["step"] for row in curve["evaluations"]]
+    assert stored_steps[: len(steps)] == steps
     assert max(took_s) <= FULL_STATE_S
 
 

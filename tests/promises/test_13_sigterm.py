@@ -88,8 +88,8 @@ def test_sigterm_drains_a_long_queue(launch: Callable[..., Served], tmp_path: Pa
     end_and_check(server, signal.SIGTERM)
     with opened(tmp_path, None) as store:
         runs = [store.get(run_id) for run_id in ids]
-    told = {(run.state, run.error) for run in runs}
-    assert told == {("interrupted", "The server was stopped before its turn came.")}
+    ends = {(run.state, run.error) for run in runs}
+    assert ends == {("interrupted", "The server was stopped before its turn came.")}
     assert all(run.ended_at is not None for run in runs)
 
 

@@ -90,13 +90,13 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
     server = launch()
     assert server.look(run)["state"] == "interrupted"
     path = f"/api/v1/experiments/{run['id']}"
-    kept = server.client.get(f"{path}/trials").json()["trials"]
-    assert kept
+    stored_trials = server.client.get(f"{path}/trials").json()["trials"]
+    assert stored_trials
     assert server.client.get(f"{path}/summary").json()["trials"]["total"] == SEEDS + 1
     assert server.tell(run, "resume").status_code == 202
     ended = server.in_state(run, "finished", "failed", "stopped")
     assert ended["state"] == "finished", ended
     rows = server.client.get(f"{path}/trials").json()["trials"]
-    assert all(row in rows for row in kept), "some were repeated"
+    assert all(row in rows for row in stored_trials), "some were repeated"
     plain = json.loads(json.dumps(tried(sweep(seeds=SEEDS, steps=(3000,)))))
     assert {row["key"]: row["result"] for row in rows} == plain

@@ -75,15 +75,15 @@ def operations(api: Api) -> list[Any]:
     """Return all operations of the OpenAPI schema but the endless event stream."""
     contract = api.client.get("/openapi.json").json()
     schema: Any = schemathesis.openapi.from_dict(contract)
-    found = [result.ok() for result in schema.get_all_operations()]
-    return [operation for operation in found if operation.path != ENDLESS]
+    parsed = [result.ok() for result in schema.get_all_operations()]
+    return [operation for operation in parsed if operation.path != ENDLESS]
 
 
 @only_whole
 @pytest.mark.timeout(3600)
 def test_generated_requests_give_no_5xx(unlimited_api: Api) -> None:
-    found = operations(unlimited_api)
-    assert len(found) > 25
+    all_operations = operations(unlimited_api)
+    assert len(all_operations) > 25
     failed: list[tuple[int, str]] = []
     count = 0
 
@@ -94,19 +94,19 @@ def test_generated_requests_give_no_5xx(unlimited_api: Api) -> None:
         if answer.status_code >= 500 and case.path != "/readyz":
             failed.append((answer.status_code, case.as_curl_command()))
 
-    for operation in found:
+    for operation in all_operations:
         for mode in modes_of(operation):
-            run_cases(operation.as_strategy(generation_mode=mode), try_one, len(found))
+            run_cases(operation.as_strategy(generation_mode=mode), try_one, len(all_operations))
     assert failed == [], count
     assert count >= CASES
 
 
 def modes_of(operation: Any) -> list[GenerationMode]:
     """Return the modes that have cases: of a path alone, no value is invalid."""
-    others = [
+    inner_parameters = [
         parameter for parameter in operation.iter_parameters() if parameter.location != "path"
     ]
-    may_be_invalid = bool(others or operation.body)
+    may_be_invalid = bool(inner_parameters or operation.body)
     return [GenerationMode.POSITIVE, *[GenerationMode.NEGATIVE] * may_be_invalid]
 
 
@@ -121,8 +121,8 @@ def run_cases(strategy: Any, act: Callable[[Any], None], operations: int) -> Non
         phases=[Phase.generate],
         suppress_health_check=list(HealthCheck),
     )
-    given: Any = hypothesis.given(strategy)
-    test: Callable[[], None] = settings(given(act))
+    decorate: Any = hypothesis.given(strategy)
+    test: Callable[[], None] = settings(decorate(act))
     try:
         test()
     except hypothesis.errors.Unsatisfiable:
@@ -137,23 +137,25 @@ def sendable(case: Any) -> dict[str, Any]:
     if data is not None:
         request["content"] = data if isinstance(data, bytes | str) else json.dumps(data)
     wanted = ("method", "url", "params", "headers", "cookies", "content", "json")
-    kept = {name: request[name] for name in wanted if request.get(name) is not None}
-    kept["headers"] = {
+    sent = {name: request[name] for name in wanted if request.get(name) is not None}
+    sent["headers"] = {
         name: value
-        for name, value in (kept.get("headers") or {}).items()
+        for name, value in (sent.get("headers") or {}).items()
         if str(value).isprintable() and str(value).isascii()
     }
-    kept.pop("cookies", None)
-    return kept
+    sent.pop("cookies", None)
+    return sent
 
 
 def odd_requests(api: Api) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Yield malformed requests for every operation: method, path and arguments."""
     as_json = {"Content-Type": "application/json"}
     paths = api.client.get("/openapi.json").json()["paths"]
-    found = [(method, path) for path, item in paths.items() for method in item if path != ENDLESS]
+    operations = [
+        (method, path) for path, item in paths.items() for method in item if path != ENDLESS
+    ]
     for number, (method, path) in enumerate(
-        (m.upper(), p.replace("{run_id}", "none")) for m, p in found
+        (m.upper(), p.replace("{run_id}", "none")) for m, p in operations
     ):
         # Each operation begins with another one, so that each of them meets many operations.
         some = slice(number % EVERY, None, EVERY)

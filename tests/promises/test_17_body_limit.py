@@ -55,12 +55,12 @@ def test_every_body_is_capped(quiet_server: Serving) -> None:
     refused = 0
     with watched_memory(quiet_server.pid) as memory:
         for method, path in routes:
-            here = path.replace("{run_id}", "none")
-            assert answer(quiet_server, method, here, chunked=False) == 413, (method, path)
-            takes_files = here.endswith(("/import", "/robots"))
+            filled_path = path.replace("{run_id}", "none")
+            assert answer(quiet_server, method, filled_path, chunked=False) == 413, (method, path)
+            takes_files = filled_path.endswith(("/import", "/robots"))
             if not takes_files and method != "DELETE":
                 # Or 404, from a route that takes no body and so reads none.
-                status = answer(quiet_server, method, here, chunked=True)
+                status = answer(quiet_server, method, filled_path, chunked=True)
                 assert status in (404, 413), (method, path)
                 refused += status == 413
 

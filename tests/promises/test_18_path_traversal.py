@@ -40,14 +40,14 @@ LEAKS = (SECRET.encode(), b"root:x:0:0", b"SQLite format 3", b"[build-system]", 
 
 
 def paths(templates: list[str]) -> list[str]:
-    found = [*OTHERS]
+    hostile_paths = [*OTHERS]
     for up, slash in product(UP, SLASH):
         for depth in (1, 8):
             climb = (up + slash) * depth
-            found += [folder + climb + aim for folder, aim in product(FOLDERS, AIMS)]
-        one = f"{up}{slash}{up}{slash}secret.txt"
-        found += [template.replace("{run_id}", one) for template in templates]
-    return found
+            hostile_paths += [folder + climb + aim for folder, aim in product(FOLDERS, AIMS)]
+        climbing_id = f"{up}{slash}{up}{slash}secret.txt"
+        hostile_paths += [template.replace("{run_id}", climbing_id) for template in templates]
+    return hostile_paths
 
 
 @pytest.mark.timeout(300)

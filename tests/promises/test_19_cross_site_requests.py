@@ -56,7 +56,7 @@ FOREIGN_FETCHES = [
 
 def test_foreign_headers_are_refused_on_every_route(quiet_server: Serving) -> None:
     port = quiet_server.port
-    own = f"127.0.0.1:{port}"
+    server_host = f"127.0.0.1:{port}"
     headers = [{"Host": host.format(port=port)} for host in FOREIGN_HOSTS]
     headers += [{"Origin": origin.format(port=port)} for origin in FOREIGN_ORIGINS]
     headers += FOREIGN_FETCHES
@@ -66,7 +66,7 @@ def test_foreign_headers_are_refused_on_every_route(quiet_server: Serving) -> No
     for number, route in enumerate(routes):
         # Each route begins with another one, so that each of them meets many routes.
         for foreign in headers[number % EVERY :: EVERY]:
-            answer = send(port, *request_lines(route, own, **foreign))
+            answer = send(port, *request_lines(route, server_host, **foreign))
             # uvicorn itself refuses a malformed Host.
             if status_of(answer) not in (403, 400):
                 accepted.append((route, foreign, answer[:100]))
@@ -91,8 +91,8 @@ def test_duplicate_hosts_or_origins_are_refused(quiet_server: Serving) -> None:
 
 def test_the_apps_own_page_is_accepted_on_every_route(quiet_server: Serving) -> None:
     port = quiet_server.port
-    own = f"127.0.0.1:{port}"
+    server_host = f"127.0.0.1:{port}"
     for route in every_route():
         if route.method in ("GET", "HEAD", "WS"):
-            answer = send(port, *request_lines(route, own, Origin=f"http://{own}"))
+            answer = send(port, *request_lines(route, server_host, Origin=f"http://{server_host}"))
             assert status_of(answer) not in (400, 401, 403), (route, answer[:200])

@@ -181,13 +181,19 @@ def test_a_spectators_page_offers_nothing_that_would_fail(
         page.keyboard.press(key)
 
     assert len(pressed) > 3
-    changing = [f"{one.method} {one.url}" for one in requests if one.method not in ("GET", "HEAD")]
+    changing = [
+        f"{request.method} {request.url}"
+        for request in requests
+        if request.method not in ("GET", "HEAD")
+    ]
     address = public.server.address.rstrip("/")
     assert set(changing) <= {f"POST {address}{path}" for path in (WHAT_IF, PREVIEW)}
     verbs = ("Train ", "Race", "Stop", "Pause", "Resume", "Delete", "Show on", "Start", "Go on")
     # A replay that no other page sees may be held by anybody.
-    own = {"Races", "Pause replay"}
-    assert not [words for words in pressed if words not in own and words.startswith(verbs)]
+    viewer_buttons = {"Races", "Pause replay"}
+    assert not [
+        words for words in pressed if words not in viewer_buttons and words.startswith(verbs)
+    ]
 
 
 def press_everything(page: Page, before: Sequence[str]) -> list[str]:

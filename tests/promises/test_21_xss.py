@@ -55,8 +55,8 @@ PREFIXES = ["", '"', "'", "'>", '">', "</title>", "</script>", "\u0301\ufe0f\u03
 
 def payloads() -> list[str]:
     """Return distinct payloads, each at most as long as a name may be."""
-    found = [prefix + tag.replace("{}", RUNS) for prefix, tag in product(PREFIXES, TAGS)]
-    return list(dict.fromkeys(name[:100] for name in found))[:PAYLOADS]
+    names = [prefix + tag.replace("{}", RUNS) for prefix, tag in product(PREFIXES, TAGS)]
+    return list(dict.fromkeys(name[:100] for name in names))[:PAYLOADS]
 
 
 BREAKS_OUT = payloads()[100]
@@ -88,8 +88,8 @@ class Watched:
         assert self.violations == []
 
     def _violations_in(self, frame: Frame) -> list[str]:
-        found: list[str] = frame.evaluate("[...(window.violations ?? ['not watched'])]")
-        return found + (["a script ran"] if frame.evaluate("'xss' in window") else [])
+        violations: list[str] = frame.evaluate("[...(window.violations ?? ['not watched'])]")
+        return violations + (["a script ran"] if frame.evaluate("'xss' in window") else [])
 
     def _on_dialog(self, dialog: Dialog) -> None:
         self.violations.append(dialog.message)

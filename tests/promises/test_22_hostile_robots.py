@@ -47,21 +47,21 @@ def leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[
     assert list(tmp_path.iterdir()) == []
     assert psutil.Process().num_fds() <= files
     running = psutil.Process().children(recursive=True)
-    assert [one.name() for one in running if one.name() == "robot import"] == []
+    assert [process.name() for process in running if process.name() == "robot import"] == []
 
 
 def outcome(data: bytes, name: str = "robot.xml") -> ImportedRobot | str:
     """Return the robot, or the sentence with which it is refused, after a check of it."""
     began_s = time.monotonic()
     try:
-        found: ImportedRobot | str = read_robot_file(data, name)
+        result: ImportedRobot | str = read_robot_file(data, name)
     except InvalidInput as error:
-        found = str(error)
-        assert 10 < len(found) <= 1000
-        assert "\n" not in found
-        assert SURPRISED not in found
+        result = str(error)
+        assert 10 < len(result) <= 1000
+        assert "\n" not in result
+        assert SURPRISED not in result
     assert time.monotonic() - began_s < LONGEST_S
-    return found
+    return result
 
 
 @pytest.mark.timeout(at_length(300, 3600))
@@ -70,7 +70,7 @@ def test_damaged_files_are_refused_or_read_as_valid_robots() -> None:
     outcomes = [outcome(data) for _, data in damaged(DAMAGED, np.random.default_rng(22))]
 
     assert time.monotonic() - began_s < DAMAGED * USUAL_S
-    refused = [one for one in outcomes if isinstance(one, str)]
+    refused = [result for result in outcomes if isinstance(result, str)]
     # Some damage changes nothing that matters.
     assert DAMAGED // 2 < len(refused) < DAMAGED
 
@@ -268,10 +268,10 @@ def test_there_are_fifty() -> None:
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_files_are_refused(name: str) -> None:
-    found = outcome(HOSTILE[name](), "robot.zip")
+    result = outcome(HOSTILE[name](), "robot.zip")
 
-    assert isinstance(found, str), name
-    assert "root:" not in found
+    assert isinstance(result, str), name
+    assert "root:" not in result
 
 
 @pytest.mark.parametrize(
@@ -285,9 +285,9 @@ def test_hostile_files_are_refused(name: str) -> None:
     ],
 )
 def test_what_is_no_body_takes_no_memory(section: str) -> None:
-    found = outcome(with_section(section))
+    result = outcome(with_section(section))
 
-    assert isinstance(found, ImportedRobot)
+    assert isinstance(result, ImportedRobot)
 
 
 LIBRARY = ("-c", "import hexapods as hx; hx.load_robot('bug.zip')")

@@ -64,13 +64,13 @@ def test_a_trial_that_kills_its_worker_three_times_is_set_aside_and_the_rest_com
         results = dict(folder.results)
 
     keys = {trial.key for trial in crashing}
-    reasons = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    reasons = {trial["key"]: trial["reason"] for trial in summary["trials"]["set_aside"]}
     assert reasons == dict.fromkeys(keys, "it ended its worker's process 3 times")
     assert summary["trials"]["done"] == len(trials) - len(crashing)
     opened(page, tmp_path, summary)
     report = text_of(page)
-    for one in summary["trials"]["set_aside"]:
-        label = one["label"].replace("\xa0", " ")
-        assert f"{label} was set aside: {one['reason']}" in report
+    for entry in summary["trials"]["set_aside"]:
+        label = entry["label"].replace("\xa0", " ")
+        assert f"{label} was set aside: {entry['reason']}" in report
     set_crashes(tmp_path, [])
     assert results == one_by_one(trial for trial in trials if trial.key not in keys)

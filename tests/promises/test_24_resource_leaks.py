@@ -75,8 +75,8 @@ def lowest_file_count(server: Serving) -> int:
     end = time.monotonic() + NOTICED_S
     counts = []
     while time.monotonic() < end:
-        ours = database_files(server.pid, server.data)
-        counts.append(psutil.Process(server.pid).num_fds() - len(ours))
+        of_database = database_files(server.pid, server.data)
+        counts.append(psutil.Process(server.pid).num_fds() - len(of_database))
         time.sleep(0.05)
     return min(counts)
 
@@ -118,14 +118,14 @@ def used_by_pool() -> tuple[int, int, int]:
 
     The least of each in 2 s, since what ends a process is cleared up a moment later.
     """
-    ours, fork_server = psutil.Process(), vars(forkserver._forkserver)["_forkserver_pid"]
+    this_process, fork_server = psutil.Process(), vars(forkserver._forkserver)["_forkserver_pid"]
     end, samples = time.monotonic() + NOTICED_S, []
     while time.monotonic() < end:
-        others = psutil.Process(fork_server).num_fds()
-        samples.append((threading.active_count(), ours.num_fds(), others))
+        fork_server_files = psutil.Process(fork_server).num_fds()
+        samples.append((threading.active_count(), this_process.num_fds(), fork_server_files))
         time.sleep(0.05)
-    threads, files, files_of_others = map(min, zip(*samples, strict=True))
-    return threads, files, files_of_others
+    threads, files, files_of_fork_server = map(min, zip(*samples, strict=True))
+    return threads, files, files_of_fork_server
 
 
 @pytest.mark.timeout(3600)

@@ -53,8 +53,8 @@ def database_in(folder: Path, url: str | None) -> Iterator[Database]:
 
 
 def check_sample(store: RunStore) -> None:
-    first, *others = sample_runs.RUNS
-    runs = [replace(first, **sample_runs.ANNOTATIONS), *others, sample_runs.EXPERIMENT]
+    first, *later_runs = sample_runs.RUNS
+    runs = [replace(first, **sample_runs.ANNOTATIONS), *later_runs, sample_runs.EXPERIMENT]
     assert [run.id for run in store.list().items] == [run.id for run in reversed(runs)]
     for run in runs:
         assert store.get(run.id) == run
@@ -138,8 +138,8 @@ def test_the_migrations_result_in_the_current_schema(
         migrate_tables(load().classes, store.database)
 
         def differences(connection: Connection) -> list[object]:
-            found = compare_metadata(MigrationContext.configure(connection), ALL_METADATA)  # type: ignore[arg-type]  # it takes several
-            return [change for change in found if "alembic_version_" not in str(change)]
+            changes = compare_metadata(MigrationContext.configure(connection), ALL_METADATA)  # type: ignore[arg-type]  # it takes several
+            return [change for change in changes if "alembic_version_" not in str(change)]
 
         assert store.database.read(differences) == []
 

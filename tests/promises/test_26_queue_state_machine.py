@@ -67,15 +67,15 @@ class Model:
         """Whether its process may have been killed, so that it may become `failed`."""
 
     def possible(self) -> set[str]:
-        found, left = set(), set(self.states)
+        reachable, left = set(), set(self.states)
         while left:
             state = left.pop()
-            found.add(state)
-            further = SPONTANEOUS.get(state, set()) - found
+            reachable.add(state)
+            further = SPONTANEOUS.get(state, set()) - reachable
             left |= further if self.is_short else further - {"finished"}
-        if self.is_killed and found & LIVE:
-            found.add("failed")
-        return found
+        if self.is_killed and reachable & LIVE:
+            reachable.add("failed")
+        return reachable
 
     def expect(
         self,

@@ -116,8 +116,8 @@ def check_all_reads(server: Served, ids: dict[str, str]) -> dict[str, str]:
             assert server.client.get(f"/api/v1/{kind}?state={state}").status_code == 200
     assert SOUND in listed(server, "trainings")
     assert "damaged" not in listed(server, "trainings")[SOUND]
-    others = {(run_id, kind) for run_id in damaged.keys() - ids for kind in KINDS.values()}
-    for run_id, kind in {*ids.items(), *others}:
+    damaged_runs = {(run_id, kind) for run_id in damaged.keys() - ids for kind in KINDS.values()}
+    for run_id, kind in {*ids.items(), *damaged_runs}:
         for below in BELOW[kind]:
             answer = server.client.get(f"/api/v1/{kind}/{run_id}{below}")
             assert answer.status_code < 500, (run_id, below, answer.text)
@@ -321,8 +321,8 @@ def command(data_folder: Path) -> Callable[..., Any]:
     """A function that runs a command of `hexapods` in this process, and returns its JSON."""
 
     def run(*arguments: str, code: int = 0) -> Any:
-        given = (*arguments, "--data", str(data_folder), "--json")
-        done = in_process(*given, folder=data_folder, HEXAPODS_PORT="0")
+        options = (*arguments, "--data", str(data_folder), "--json")
+        done = in_process(*options, folder=data_folder, HEXAPODS_PORT="0")
         assert (done.returncode, done.stderr) == (code, "")
         return json.loads(done.stdout)
 
@@ -337,7 +337,7 @@ def test_damaged_runs_are_named_everywhere_and_can_be_deleted(
     command: Callable[..., Any],
 ) -> None:
     ids = [TRAINING, *(f"00000000000d{number}" for number in range(1, len(damage)))]
-    kept = {run_id for run_id, (column, _) in zip(ids, damage, strict=True) if column != "id"}
+    deletable = {run_id for run_id, (column, _) in zip(ids, damage, strict=True) if column != "id"}
     with opened(data_folder, None) as store:
         for run_id in ids[1:]:
             ended_training(store, run_id, steps=20)
@@ -347,7 +347,7 @@ def test_damaged_runs_are_named_everywhere_and_can_be_deleted(
         server = launch()
         damaged = check_all_reads(server, {**KINDS, **dict.fromkeys(ids, "trainings")})
         assert len(damaged) == len(damage), damaged
-        assert damaged.keys() >= kept
+        assert damaged.keys() >= deletable
         assert f"hexapods_runs_damaged {len(damage)}.0" in server.client.get("/metrics").text
         rows = {run["id"]: run.get("damaged") for run in command("runs", "list")["items"]}
         assert rows == {**dict.fromkeys((SOUND, RACE, EXPERIMENT)), **damaged}

@@ -38,7 +38,7 @@ TABLES = [table for table in ALL_TABLES.values() if table is not ABOUT]
 MADE_SEPARATELY = {"rooms", "robots"}
 """Tables of which the folder has a row for each column; rows of others are copied."""
 VALUES = [None, *STORED, BROKEN_TEXT]
-NOT_HUGE = [one for one in VALUES if not isinstance(one, str) or len(one) < 1_000_000]
+NOT_HUGE = [value for value in VALUES if not isinstance(value, str) or len(value) < 1_000_000]
 """Values of which a folder may have one in each column."""
 A_FEW = at_length(2, None)
 STREAMS = ("/events", "/viewer")
@@ -91,7 +91,10 @@ def damage(file: sqlite3.Connection, column: Column[Any], value: Any, rowid: int
     except sqlite3.IntegrityError:
         assert value is None or column.primary_key
         return None
-    names = [column.name, *(one.name for one in table.primary_key if one is not column)]
+    names = [
+        column.name,
+        *(key_column.name for key_column in table.primary_key if key_column is not column),
+    ]
     query = f"SELECT {', '.join(names)} FROM {table} WHERE rowid = ?"
     stored, *key = file.execute(query, (rowid,)).fetchone()
     return Damage(column, stored, dict(zip(names[1:], key, strict=True)))
@@ -137,14 +140,14 @@ def doctor(folder: Path) -> str:
 
 def check_named(damages: list[Damage], said: str) -> None:
     """Check that what is damage for certain is named, by its table and what is left of its key."""
-    for one in damages:
-        if is_certain_damage(one.column, one.stored):
-            assert is_named(one, said), one
+    for damage in damages:
+        if is_certain_damage(damage.column, damage.stored):
+            assert is_named(damage, said), damage
 
 
-def is_named(one: Damage, said: str) -> bool:
-    parts = [f"{one.column.table.name} ", *(f"{name} {key}" for name, key in one.key.items())]
-    return any(all(part in row for part in parts) for row in said.split(";"))
+def is_named(damage: Damage, said: str) -> bool:
+    parts = [f"{damage.column.table.name} ", *(f"{name} {key}" for name, key in damage.key.items())]
+    return any(all(word in row for word in parts) for row in said.split(";"))
 
 
 def ids_of(folder: Path) -> dict[str, list[str]]:
@@ -163,8 +166,12 @@ def ids_of(folder: Path) -> dict[str, list[str]]:
             for name, (table, column) in columns.items()
         }
     ids = {
-        name: [one.decode() for (one,) in found if isinstance(one, bytes) and is_asked_for(one)]
-        for name, found in rows.items()
+        name: [
+            identifier.decode()
+            for (identifier,) in values
+            if isinstance(identifier, bytes) and is_asked_for(identifier)
+        ]
+        for name, values in rows.items()
     }
     constants = {"name": "operations", "name:path": "summary.json", "level": "0", "number": "0"}
     return {**ids, **{name: [value] for name, value in constants.items()}}
@@ -192,9 +199,9 @@ def filled(path: str, ids: dict[str, list[str]]) -> Iterator[str]:
     before, _, rest = path.partition("{")
     name, _, after = rest.partition("}")
     assert ids[name], f"a path with nothing to ask for: {path}"
-    for one in ids[name]:
+    for identifier in ids[name]:
         for end in filled(after, {key: values[:1] for key, values in ids.items()}):
-            yield f"{before}{one}{end}"
+            yield f"{before}{identifier}{end}"
 
 
 def check_class_goes_on(server: Served) -> None:
@@ -218,25 +225,25 @@ def damage_each_column(folder: Path, value: Any) -> list[Damage]:
             rows = rows_to_damage(file, table)
             for column, rowid in zip(table.c, rows, strict=True):
                 damages.append(damage(file, column, value, rowid))
-    return [one for one in damages if one is not None]
+    return [damaged for damaged in damages if damaged is not None]
 
 
 def damaged_rows_of(server: Served) -> int:
     """Return how many damaged rows of all tables the metrics tell."""
     lines = server.client.get("/metrics", headers=OPERATOR).text.splitlines()
-    told = [line for line in lines if line.startswith("hexapods_rows_damaged{")]
-    assert len(told) == len(ALL_TABLES) - len(OF_RUNS) + 1  # runs are told
-    return round(sum(float(line.split()[-1]) for line in told))
+    counters = [line for line in lines if line.startswith("hexapods_rows_damaged{")]
+    assert len(counters) == len(ALL_TABLES) - len(OF_RUNS) + 1  # runs are told
+    return round(sum(float(line.split()[-1]) for line in counters))
 
 
 @pytest.mark.timeout(at_length(300, 7200))
-@pytest.mark.parametrize("value", sample(NOT_HUGE, A_FEW), ids=lambda one: repr(one)[:20])
+@pytest.mark.parametrize("value", sample(NOT_HUGE, A_FEW), ids=lambda value: repr(value)[:20])
 def test_no_row_can_keep_the_server_from_starting(
     value: Any, data_folder: Path, launch: Callable[..., Served]
 ) -> None:
     ids = ids_of(data_folder)
     damages = damage_each_column(data_folder, value)
-    assert {one.column.table for one in damages} >= set(TABLES if value is not None else ())
+    assert {damaged.column.table for damaged in damages} >= set(TABLES if value is not None else ())
     said = doctor(data_folder)
     check_named(damages, said)
     log = data_folder / "log"
@@ -250,7 +257,7 @@ def test_no_row_can_keep_the_server_from_starting(
 
 
 @pytest.mark.timeout(at_length(300, 7200))
-@pytest.mark.parametrize("shift", sample(list(range(max(len(one.c) for one in TABLES))), A_FEW))
+@pytest.mark.parametrize("shift", sample(list(range(max(len(table.c) for table in TABLES))), A_FEW))
 def test_no_row_that_others_need_can_keep_the_server_from_starting(
     shift: int, data_folder: Path, launch: Callable[..., Served]
 ) -> None:
@@ -265,13 +272,13 @@ def test_no_row_that_others_need_can_keep_the_server_from_starting(
             (rowid,) = file.execute(f"SELECT {'max' if newest else 'min'}(rowid) FROM {table}")
             column = list(table.c)[shift % len(table.c)]
             damages.append(damage(file, column, draw.choice(VALUES), rowid[0]))
-    check_named([one for one in damages if one is not None], doctor(data_folder))
+    check_named([damaged for damaged in damages if damaged is not None], doctor(data_folder))
     check_answers(launch(HEXAPODS_TOKEN=TOKEN), ids)
 
 
 @pytest.mark.timeout(at_length(300, 7200))
 @pytest.mark.parametrize(
-    "value", sample(VALUES, 1 if A_FEW else None), ids=lambda one: repr(one)[:20]
+    "value", sample(VALUES, 1 if A_FEW else None), ids=lambda value: repr(value)[:20]
 )
 def test_the_row_of_the_database_itself_can_be_damaged(
     value: Any, data_folder: Path, launch: Callable[..., Served]
@@ -281,7 +288,10 @@ def test_the_row_of_the_database_itself_can_be_damaged(
         decode_leniently(file)
         damages = [damage(file, column, value, 1) for column in ABOUT.c]
     # Its key is damaged too, of which what cannot be printed is left out; it is the only row.
-    check_named([one._replace(key={}) for one in damages if one is not None], doctor(data_folder))
+    check_named(
+        [damaged._replace(key={}) for damaged in damages if damaged is not None],
+        doctor(data_folder),
+    )
     server = launch(HEXAPODS_TOKEN=TOKEN)
     path = f"/api/v1/races/{full_folder.RACE}/recording"
     assert server.client.get(path, headers=OPERATOR).status_code == 200
@@ -323,9 +333,9 @@ def test_what_a_row_cannot_stand_for_is_damage_too(
             for (_, column, value), rowid in zip(cases, rows, strict=False):
                 damages.append(damage(file, table.c[column], value, rowid))
     said = doctor(data_folder)
-    for one in damages:
-        assert one is not None
-        assert is_named(one, said), one
+    for damaged in damages:
+        assert damaged is not None
+        assert is_named(damaged, said), damaged
     server = launch(HEXAPODS_TOKEN=TOKEN)
     check_answers(server, ids)
     check_class_goes_on(server)

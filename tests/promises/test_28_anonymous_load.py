@@ -100,9 +100,9 @@ def watched(pid: int) -> Iterator[dict[str, int]]:
         server = psutil.Process(pid)
         while not finished.wait(0.25):
             memory = 0
-            for one in [server, *server.children(recursive=True)]:
+            for process in [server, *server.children(recursive=True)]:
                 try:
-                    memory += one.memory_full_info().pss
+                    memory += process.memory_full_info().pss
                 except psutil.NoSuchProcess:
                     continue
             peak["memory"] = max(peak["memory"], memory)
@@ -188,5 +188,7 @@ def test_anonymous_load_fails_no_run(launch: Callable[..., Served], tmp_path: Pa
         assert peak["files"] < FILES
         assert log_bytes < LOG_BYTES
         assert reads["200"] > 0, reads
-        assert sum(one["came_back"] for one in idle) > 0, "the server never closed a connection"
+        assert sum(report["came_back"] for report in idle) > 0, (
+            "the server never closed a connection"
+        )
         assert server.end() == 0

@@ -51,8 +51,8 @@ def test_one_address_cannot_take_all_viewer_places(server: Served) -> None:
         viewers = [open_viewer(server, stack, "127.0.0.2") for _ in range(SHARE)]
         viewers[-1].frame()
         assert refusal(open_viewer(server, stack, "127.0.0.2")) == (1013, "address full")
-        others = [open_viewer(server, stack, "127.0.0.3") for _ in range(PLACES - SHARE)]
-        others[-1].frame()
+        neighbours = [open_viewer(server, stack, "127.0.0.3") for _ in range(PLACES - SHARE)]
+        neighbours[-1].frame()
         # All places are taken now.
         assert open_viewer(server, stack, "127.0.0.4").frame().raw
         assert refusal(viewers[-1]) == (1013, "place taken")

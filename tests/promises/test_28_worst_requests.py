@@ -86,7 +86,9 @@ def described(server: Served, port: int) -> Demo:
     for method, path in routes:
         operation = document["paths"].get(path, {}).get(method.lower(), {})
         parameters[method, path] = tuple(
-            one["name"] for one in operation.get("parameters", ()) if one["in"] == "query"
+            parameter["name"]
+            for parameter in operation.get("parameters", ())
+            if parameter["in"] == "query"
         )
         fields[method, path] = fields_of(document, method, path)
     assert any(parameters.values())

@@ -64,15 +64,15 @@ class Sockets:
                 for connection in process.net_connections(kind="all"):
                     self._record(connection)
 
-    def _record(self, one: Any) -> None:
-        if one.family not in _INET:
-            if one.laddr:
-                self.unix.add(one.laddr)
+    def _record(self, connection: Any) -> None:
+        if connection.family not in _INET:
+            if connection.laddr:
+                self.unix.add(connection.laddr)
             return
-        if one.raddr:
-            self.peers.add((one.raddr.ip, one.raddr.port))
-        elif one.status == psutil.CONN_LISTEN or one.type == socket.SOCK_DGRAM:
-            self.listening.add((one.laddr.ip, one.laddr.port))
+        if connection.raddr:
+            self.peers.add((connection.raddr.ip, connection.raddr.port))
+        elif connection.status == psutil.CONN_LISTEN or connection.type == socket.SOCK_DGRAM:
+            self.listening.add((connection.laddr.ip, connection.laddr.port))
 
 
 @contextmanager
@@ -97,7 +97,7 @@ def hostile_messages() -> list[bytes]:
     received = [{"type": cls.__name__} for cls in _messages.Message.get_subclasses()]
     assert {"type": "ShareUrlRequest"} in received
     javascript = {"type": "RunJavascriptMessage", "source": "1"}
-    return [msgspec.msgpack.encode(one) for one in [*received, javascript]]
+    return [msgspec.msgpack.encode(message) for message in [*received, javascript]]
 
 
 def attack(server: Served) -> None:
@@ -146,7 +146,7 @@ def test_only_the_app_listens_and_no_connection_leaves_the_machine(
     server: Served, audit: Path
 ) -> None:
     server.client.headers["Authorization"] = f"Bearer {TOKEN}"
-    own = int(server.address.rpartition(":")[2])
+    server_port = int(server.address.rpartition(":")[2])
     with watched(server) as sockets:
         for _ in range(ROUNDS):
             runs = [
@@ -164,7 +164,7 @@ def test_only_the_app_listens_and_no_connection_leaves_the_machine(
             while sockets.samples < seen + 2:
                 time.sleep(0.05)
 
-    assert sockets.listening == {("127.0.0.1", own)}
+    assert sockets.listening == {("127.0.0.1", server_port)}
     assert "trial worker" in sockets.names, "the experiment's processes were sampled"
     assert all(ipaddress.ip_address(host).is_loopback for host, _ in sockets.peers)
     for path in filter(os.path.exists, sockets.unix):

@@ -122,9 +122,9 @@ def test_a_server_reacquires_its_lock_after_the_database_restarts(
         first = launch(HEXAPODS_DATABASE_URL=url)
         remove_lock(tmp_path / "one", url)
         deadline = time.monotonic() + LONG_S
-        held = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND granted"
+        count_locks = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND granted"
         with psycopg.connect(url, autocommit=True) as connection:
-            while connection.execute(held).fetchone() != (1,):
+            while connection.execute(count_locks).fetchone() != (1,):
                 assert time.monotonic() < deadline
                 time.sleep(0.05)
         with serving_from(tmp_path / "two") as launch_other, pytest.raises(NotStartedError):

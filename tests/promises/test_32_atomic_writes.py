@@ -74,9 +74,9 @@ def check(report: dict[str, Any], whole: dict[str, Any]) -> None:
 
 
 def check_finish(after: dict[str, Any], whole: dict[str, Any]) -> None:
-    [kept, learned] = after["runs"]
+    [stored, learned] = after["runs"]
     [kept_whole, learned_whole] = whole["runs"]
-    assert kept == kept_whole
+    assert stored == kept_whole
     if learned["state"] == "finished":
         assert learned == learned_whole
     else:
@@ -110,12 +110,12 @@ def test_an_import_over_quota_leaves_nothing(
         headers = {"Idempotency-Key": path}
         # Leave space for half of the file.
         filler.write_bytes(bytes(QUOTA_MB * MB - folder_bytes(tmp_path) - len(data) // 2))
-        names = {one.name for one in tmp_path.glob("artifacts/*/*")}
+        names = {file.name for file in tmp_path.glob("artifacts/*/*")}
         for _ in range(3):
             answer = server.client.post(path, content=data, headers=headers)
             assert answer.status_code == 507, answer.text
             assert server.client.get("/api/v1/trainings").json()["items"] == []
-            assert {one.name for one in tmp_path.glob("artifacts/*/*")} == names
+            assert {file.name for file in tmp_path.glob("artifacts/*/*")} == names
         filler.unlink()
         runs = {
             server.client.post(path, content=data, headers=headers).json()["id"] for _ in range(3)
@@ -166,21 +166,24 @@ def test_a_server_that_is_killed_leaves_no_half_robot(
 ) -> None:
     chance = random.Random(32)
     unlimited = {"HEXAPODS_STARTS_PER_MINUTE": "1000000"}
-    server, told = launch(**unlimited), RobotsTold()
+    server, robots = launch(**unlimited), AnnouncedRobots()
     for _ in range(KILLS):
-        thread = threading.Thread(target=store_repeatedly, args=(server.address, told))
-        seen = len(told.stored)
+        thread = threading.Thread(target=store_repeatedly, args=(server.address, robots))
+        seen = len(robots.stored)
         thread.start()
-        while len(told.stored) < seen + 5:
+        while len(robots.stored) < seen + 5:
             time.sleep(0.01)
         time.sleep(chance.uniform(0, 0.3))
         server.process.send_signal(signal.SIGKILL)
         thread.join()
         server.end(signal.SIGKILL)
         server = launch(**unlimited)
-        ids = [one["id"] for one in server.client.get("/api/v1/robots?hidden=true").json()["items"]]
-        kept = told.stored - told.deleted
-        assert kept - {told.last} <= set(ids) <= kept | {told.last}
+        ids = [
+            stored_robot["id"]
+            for stored_robot in server.client.get("/api/v1/robots?hidden=true").json()["items"]
+        ]
+        expected = robots.stored - robots.deleted
+        assert expected - {robots.last} <= set(ids) <= expected | {robots.last}
         for robot_id in ids:
             document = server.client.get(f"/api/v1/robots/{robot_id}/file").content
             assert robot_documents.id_of(document) == robot_id
@@ -189,27 +192,27 @@ def test_a_server_that_is_killed_leaves_no_half_robot(
 
 
 @dataclass
-class RobotsTold:
-    """Ids of robots that a server said it had stored and deleted; the last one that was asked."""
+class AnnouncedRobots:
+    """Ids of robots that a server confirmed to have stored and deleted; the last one requested."""
 
     stored: set[str] = field(default_factory=set)
     deleted: set[str] = field(default_factory=set)
     last: str = ""
 
 
-def store_repeatedly(address: str, told: RobotsTold) -> None:
+def store_repeatedly(address: str, robots: AnnouncedRobots) -> None:
     """Store robots, and delete every other one, until the server is gone."""
     with httpx2.Client(base_url=address, timeout=60, trust_env=False) as client:
         while True:
-            made = robot({"preset": "dog", "femur_m": 0.07 + 1e-6 * len(told.stored)})
-            told.last = robot_documents.id_of(document_of(made))
+            new_robot = robot({"preset": "dog", "femur_m": 0.07 + 1e-6 * len(robots.stored)})
+            robots.last = robot_documents.id_of(document_of(new_robot))
             try:
-                answer = client.post("/api/v1/robots", json={"robot": as_mapping(made)})
+                answer = client.post("/api/v1/robots", json={"robot": as_mapping(new_robot)})
                 assert answer.status_code in (200, 201), answer.text
-                told.stored.add(told.last)
-                if len(told.stored) % 4:
-                    client.delete(f"/api/v1/robots/{told.last}").raise_for_status()
-                    told.deleted.add(told.last)
+                robots.stored.add(robots.last)
+                if len(robots.stored) % 4:
+                    client.delete(f"/api/v1/robots/{robots.last}").raise_for_status()
+                    robots.deleted.add(robots.last)
             except httpx2.TransportError:
                 return
 

@@ -78,7 +78,7 @@ def test_a_change_to_a_stopped_process_delays_no_other_request(
             assert server.client.get(path).status_code == 200
             slowest_s = max(slowest_s, time.monotonic() - began)
             time.sleep(0.02)
-        assert {one.result(LONG_S) for one in changing} <= {503, 429}
+        assert {future.result(LONG_S) for future in changing} <= {503, 429}
     assert slowest_s < ANSWERED_S
     dead = server.in_state(run, "failed")
     assert "stopped by a signal" in dead["error"]

@@ -82,16 +82,16 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield shared
 
 
-def without_tuples(part: Any) -> Any:
+def without_tuples(document: Any) -> Any:
     """Return a part of an OpenAPI document with `items` for `prefixItems`.
 
     Of an answer schemathesis turns these into a list of items, which its own validator refuses.
     """
-    if isinstance(part, list):
-        return [without_tuples(one) for one in part]
-    if not isinstance(part, dict):
-        return part
-    other = {name: without_tuples(one) for name, one in part.items()}
+    if isinstance(document, list):
+        return [without_tuples(item) for item in document]
+    if not isinstance(document, dict):
+        return document
+    other = {name: without_tuples(item) for name, item in document.items()}
     if isinstance(items := other.pop("prefixItems", None), list):
         first = items[0]
         other["items"] = first if all(item == first for item in items) else {"anyOf": items}
@@ -125,10 +125,10 @@ def schemathesis(server: Served, folder: Path, *options: str) -> int:
         check=False,
     )
     assert done.returncode == 0, done.stdout[-20_000:] + done.stderr[-5_000:]
-    found = re.search(r"^ *(\d+) generated, \1 passed", done.stdout, re.MULTILINE)
-    assert found is not None, done.stdout[-5_000:]
-    sys.stdout.write(f"{found[0]} in {time.monotonic() - began_s:.0f} s\n")
-    return int(found[1])
+    passed = re.search(r"^ *(\d+) generated, \1 passed", done.stdout, re.MULTILINE)
+    assert passed is not None, done.stdout[-5_000:]
+    sys.stdout.write(f"{passed[0]} in {time.monotonic() - began_s:.0f} s\n")
+    return int(passed[1])
 
 
 @contextmanager

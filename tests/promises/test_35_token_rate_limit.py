@@ -112,7 +112,7 @@ def test_guessing_the_codes_of_rooms_costs_a_neighbour_nothing(server: Serving) 
     assert MAX_OPEN * a_day / len(ALPHABET) ** CODE_LENGTH < 0.005
     with server.api(TOKEN) as teacher:
         code = teacher.post("rooms", json={}).raise_for_status().json()["code"]
-    of_rooms = [one for one in every_route() if "{code}" in one.path and one.method != "WS"]
+    of_rooms = [route for route in every_route() if "{code}" in route.path and route.method != "WS"]
     assert len(of_rooms) > 15
 
     def status(route: Route, code: str) -> int:
@@ -141,9 +141,9 @@ def test_joins_of_one_person_cost_a_neighbour_nothing(server: Serving) -> None:
 
     def join() -> str:
         """Join as somebody without a cookie, and return the header with the one that came."""
-        host, ours = f"Host: 127.0.0.1:{server.port}", "X-Requested-With: tests"
+        host, custom_header = f"Host: 127.0.0.1:{server.port}", "X-Requested-With: tests"
         line = f"POST {path}/participants HTTP/1.1"
-        answer = send(server.port, line, host, ours, "Content-Length: 0")
+        answer = send(server.port, line, host, custom_header, "Content-Length: 0")
         assert status_of(answer) == 201, answer
         return cookie_of(answer)
 
@@ -187,7 +187,8 @@ def test_guesses_through_a_configured_proxy_are_counted_by_its_clients(tmp_path:
             """Return how many of the guesses are refused, one for each forwarded address."""
             lines = KINDS["bearer"](server.port, 1)
             answers = [
-                request(server, source, *lines, f"X-Forwarded-For: {one}") for one in forwarded
+                request(server, source, *lines, f"X-Forwarded-For: {address}")
+                for address in forwarded
             ]
             return [status_of(answer) for answer in answers].count(429)
 
@@ -216,8 +217,8 @@ def test_a_session_survives_a_restart_but_not_a_change_of_token(tmp_path: Path) 
             cookie = (
                 client.get("/", params={"token": TOKEN}).headers["Set-Cookie"].partition(";")[0]
             )
-            ours = {"X-Requested-With": "tests"}
-            assert client.put("/api/v1/stage", json={}, headers=ours).status_code == 200
+            custom_header = {"X-Requested-With": "tests"}
+            assert client.put("/api/v1/stage", json={}, headers=custom_header).status_code == 200
     stored = (tmp_path / "hexapods.db").read_bytes()
     assert cookie.partition("=")[2].encode() not in stored
     assert status_after_restart(tmp_path, TOKEN, cookie) == 200
@@ -227,13 +228,13 @@ def test_a_session_survives_a_restart_but_not_a_change_of_token(tmp_path: Path) 
 
 def test_a_page_on_another_port_changes_nothing(server: Serving) -> None:
     cookie = sign_in(server)
-    own = f"http://127.0.0.1:{server.port}"
-    assert may_change(server, cookie, f"Origin: {own}", "Sec-Fetch-Site: same-origin")
+    origin = f"http://127.0.0.1:{server.port}"
+    assert may_change(server, cookie, f"Origin: {origin}", "Sec-Fetch-Site: same-origin")
     for foreign in (
         (f"Origin: http://127.0.0.1:{server.port + 1}",),
         ("Origin: http://127.0.0.1",),
         (f"Origin: http://localhost:{server.port}",),
         ("Sec-Fetch-Site: same-site",),
-        (f"Origin: {own}", "Sec-Fetch-Site: same-site"),
+        (f"Origin: {origin}", "Sec-Fetch-Site: same-site"),
     ):
         assert not may_change(server, cookie, *foreign), foreign

@@ -205,7 +205,7 @@ def read_all(server: Served, race: dict[str, Any]) -> None:
         read = 0
         with server.client.stream("GET", f"/api/v1/{path}") as response:
             assert response.status_code == 200, path
-            for part in response.iter_raw():
-                read += len(part)
+            for chunk in response.iter_raw():
+                read += len(chunk)
                 if read > READ_BYTES:
                     break

@@ -121,7 +121,7 @@ class Visit:
         """Return what the page says that is not so."""
         stage = self._stage()
         run = self._run(stage["run_id"])
-        active = [one for one in self._runs() if one["state"] in ACTIVE]
+        active = [active_run for active_run in self._runs() if active_run["state"] in ACTIVE]
         page = Words(self._dashboard)
         wrong = [*page.about_stage(stage, run), *page.about_form(active, run)]
         if run is None or run["kind"] == "training":
@@ -169,8 +169,8 @@ class Words:
         self._notes = dashboard.notes.inner_text()
 
     @staticmethod
-    def _text(found: Any) -> str:
-        text: str = found.inner_text() if found.count() else ""
+    def _text(locator: Any) -> str:
+        text: str = locator.inner_text() if locator.count() else ""
         return text
 
     def about_stage(self, stage: dict[str, Any], run: dict[str, Any] | None) -> list[str]:
@@ -192,9 +192,9 @@ class Words:
             done, total = run["progress"]["done"], run["progress"]["total"]
             if self._headline != f"{EARLY_ENDS[run['state']]} at step {done} of {total}":
                 wrong.append(f"headline of a practice that is {run['state']}: {self._headline}")
-        told = self._headline or self._label
-        if told not in self._title:
-            wrong.append(f"title {self._title!r} beside {told!r}")
+        shown_name = self._headline or self._label
+        if shown_name not in self._title:
+            wrong.append(f"title {self._title!r} beside {shown_name!r}")
         return wrong
 
     def about_form(self, active: list[dict[str, Any]], run: dict[str, Any] | None) -> list[str]:
@@ -204,7 +204,7 @@ class Words:
         if not active and re.search(r"Practising|Simulating|Racing…", self._actions):
             wrong.append(f"work that is none: {self._actions!r}")
         # By ids: what is computed goes on between two answers.
-        is_shown = run is not None and any(one["id"] == run["id"] for one in active)
+        is_shown = run is not None and any(active_run["id"] == run["id"] for active_run in active)
         if active and not is_shown and "shown ▸" in self._actions:
             wrong.append(f"a picture of other work: {self._actions!r}")
         return wrong

@@ -74,10 +74,12 @@ class Expected:
     def restored(self) -> str | None:
         """The run that a new server shows: of those last at work, or interrupted with it."""
         order = {run_id: number for number, run_id in enumerate(self.states)}
-        runs = sorted(order, key=lambda one: (self.activity[one], order[one]), reverse=True)
-        interrupted = [one for one in runs if self.states[one] == "interrupted"]
+        runs = sorted(
+            order, key=lambda run_id: (self.activity[run_id], order[run_id]), reverse=True
+        )
+        interrupted = [run_id for run_id in runs if self.states[run_id] == "interrupted"]
         last = interrupted if runs[:1] == interrupted[:1] else []
-        recorded = [one for one in last or runs if self.steps[one]]
+        recorded = [run_id for run_id in last or runs if self.steps[run_id]]
         return next(iter([*recorded, *last]), None)
 
     def put(self, run_id: str | None, *, is_chosen: bool) -> None:
@@ -188,7 +190,7 @@ class Audience:
     def _begin(self) -> None:
         parts = self._parts
         parts.recordings, parts.bus = Recordings(parts.store), EventBus()
-        self._told = parts.bus.subscribe(names=frozenset({"stage"}))
+        self._stage_events = parts.bus.subscribe(names=frozenset({"stage"}))
         parts.stage = Stage(
             parts.store, parts.recordings, Channel(parts.bus), now=lambda: parts.now
         )
@@ -196,8 +198,8 @@ class Audience:
         self._newest = parts.stage.state()
 
     def _any(self, *states: State) -> str | None:
-        known = self._expected.states.items()
-        runs = [run_id for run_id, state in known if not states or state in states]
+        states_by_run = self._expected.states.items()
+        runs = [run_id for run_id, state in states_by_run if not states or state in states]
         return self._chance.choice(runs) if runs else None
 
     def _begin_recording(self, run_id: str) -> None:
@@ -238,8 +240,8 @@ class Audience:
         """Compare what the stage says with what is expected."""
         expected = self._expected
         stage, frame = self._parts.stage.state(), self._parts.stage.frame()
-        told = self._told.drain()
-        self._newest = json.loads(told[-1].data) if told else self._newest
+        events = self._stage_events.drain()
+        self._newest = json.loads(events[-1].data) if events else self._newest
         for name in stage.keys() - {"time_s", "announced"}:
             assert stage[name] == self._newest[name], "what pages were told last"
         assert stage["run_id"] == frame.run_id == expected.on_stage

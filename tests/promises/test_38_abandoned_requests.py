@@ -68,9 +68,9 @@ def call(
     began_s = time.perf_counter()
     port = int(server.address.rpartition(":")[2])
     connection = http.client.HTTPConnection("127.0.0.1", port, LONG_S, (source, 0))
-    own = {} if body is None else {"Content-Type": "application/json"}
+    content_headers = {} if body is None else {"Content-Type": "application/json"}
     content = None if body is None else json.dumps(body)
-    connection.request(method, path, content, {**own, **(headers or {})})
+    connection.request(method, path, content, {**content_headers, **(headers or {})})
     answer = connection.getresponse()
     data = answer.read()
     connection.close()

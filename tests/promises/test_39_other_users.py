@@ -37,9 +37,9 @@ EXPERIMENT = {
 @pytest.fixture
 def folder() -> Iterator[Path]:
     """A folder that others may enter, unlike those of pytest."""
-    with tempfile.TemporaryDirectory() as made:
-        Path(made).chmod(0o755)
-        yield Path(made)
+    with tempfile.TemporaryDirectory() as path:
+        Path(path).chmod(0o755)
+        yield Path(path)
 
 
 @contextmanager
@@ -72,7 +72,7 @@ def is_refused(attempt: Callable[[], object]) -> bool:
 def is_closed(path: Path) -> bool:
     """Whether another user can neither open nor lock a file, nor list a folder, nor connect."""
     if not IS_ROOT:
-        return any(part.stat().st_mode & 0o077 == 0 for part in (path, *path.parents))
+        return any(folder.stat().st_mode & 0o077 == 0 for folder in (path, *path.parents))
     if path.is_dir():
         return is_refused(lambda: list(path.iterdir()))
     return is_refused(lambda: take_lock(path)) and is_refused(lambda: path.open("ab").close())
@@ -95,19 +95,19 @@ def processes(server: Served) -> list[psutil.Process]:
     return [process, *process.children(recursive=True)]
 
 
-def files_of(one: psutil.Process) -> set[Path]:
+def files_of(process: psutil.Process) -> set[Path]:
     """Return the files that a process has open for writing, and its Unix sockets, by path."""
     with suppress(psutil.Error):
-        opened = [Path(file.path) for file in one.open_files() if set(file.mode) & set("wa+")]
+        opened = [Path(file.path) for file in process.open_files() if set(file.mode) & set("wa+")]
         # Of a Unix socket the address is its path, or empty.
-        sockets = [Path(str(pair.laddr)) for pair in one.net_connections("unix")]
+        sockets = [Path(str(pair.laddr)) for pair in process.net_connections("unix")]
         return {path for path in (*opened, *sockets) if path.is_absolute() and path.exists()}
     return set()
 
 
-def umask_of(one: psutil.Process) -> int | None:
+def umask_of(process: psutil.Process) -> int | None:
     with suppress(OSError):
-        status = Path(f"/proc/{one.pid}/status").read_text("utf-8")
+        status = Path(f"/proc/{process.pid}/status").read_text("utf-8")
         (line,) = [line for line in status.splitlines() if line.startswith("Umask:")]
         return int(line.split()[1], 8)
     return None
@@ -121,8 +121,8 @@ def test_no_process_keeps_the_token_in_its_environment(tmp_path: Path) -> None:
         server.client.headers["Authorization"] = f"Bearer {TOKEN}"
         server.moving(server.start(ENDLESS))
         family = processes(server)
-        assert any("forkserver" in " ".join(one.cmdline()) for one in family)
-        shown = [Path(f"/proc/{one.pid}/environ").read_bytes() for one in family]
+        assert any("forkserver" in " ".join(process.cmdline()) for process in family)
+        shown = [Path(f"/proc/{process.pid}/environ").read_bytes() for process in family]
         assert all(b"HEXAPODS_LOG_LEVEL=warning" in environment for environment in shown)
         assert not any(TOKEN.encode() in environment for environment in shown)
 
@@ -150,11 +150,11 @@ def test_another_user_reads_nothing_and_takes_no_lock(folder: Path) -> None:
 
         family = processes(server)
         assert len(family) > 4
-        found = {path for one in family for path in files_of(one)}
-        assert any(path.suffix == ".db" for path in found)
-        assert any(path.is_socket() for path in found), "the fork server's"
-        paths = {data, *data.rglob("*"), *found}
+        opened = {path for process in family for path in files_of(process)}
+        assert any(path.suffix == ".db" for path in opened)
+        assert any(path.is_socket() for path in opened), "the fork server's"
+        paths = {data, *data.rglob("*"), *opened}
         assert [path for path in paths if not is_closed(path)] == []
-        assert {umask_of(one) for one in family} <= {0o077, None}
+        assert {umask_of(process) for process in family} <= {0o077, None}
         assert server.look(training)["state"] == "running"
         assert server.end() == 0

@@ -30,7 +30,7 @@ CARDS = [
     for lesson_id, lesson in built_in().items()
     for number, card in enumerate(lesson.cards)
 ]
-DIFFERENT = list({(one[2].ask is None, one[2].go): one for one in CARDS}.values())
+DIFFERENT = list({(card[2].ask is None, card[2].go): card for card in CARDS}.values())
 """One card of each kind."""
 TRIED = at_length(DIFFERENT, CARDS)
 ROOM = "/api/v1/rooms/{code}"
@@ -98,16 +98,16 @@ class Desk(NamedTuple):
 
     def people(self) -> list[dict[str, Any]]:
         """Return all that a participant could change, as the teacher sees it."""
-        found = self.teach("GET", f"/api/v1/rooms/{self.code}", None)["people"]
+        people = self.teach("GET", f"/api/v1/rooms/{self.code}", None)["people"]
         # The run goes on by itself.
-        return [{k: v for k, v in one.items() if k != "run_state"} for one in found]
+        return [{k: v for k, v in person.items() if k != "run_state"} for person in people]
 
     def join(self) -> str:
         """Join the room, and return the header of the cookie."""
         answer = self.call("POST", f"/api/v1/rooms/{self.code}/participants", body={})
         assert status_of(answer) == 201
         head = answer.partition(b"\r\n\r\n")[0].decode().split("\r\n")
-        cookie = next(one for one in head if one.lower().startswith("set-cookie"))
+        cookie = next(line for line in head if line.lower().startswith("set-cookie"))
         return f"Cookie: {cookie.partition(': ')[2].partition(';')[0]}"
 
 
@@ -118,7 +118,7 @@ def room_of(server: Serving, lesson: Any) -> Desk:
     desk = desk._replace(code=code)
     other = desk.join()
     cards = built_in()[lesson].cards
-    runs = [n for n, one in enumerate(cards) if one.go in ("training", "race")]
+    runs = [n for n, card in enumerate(cards) if card.go in ("training", "race")]
     desk.teach("PUT", f"/api/v1/rooms/{code}/card", {"card": runs[0]})
     answer = desk.call("POST", f"/api/v1/rooms/{code}/runs", other, body={})
     assert status_of(answer) == 202, answer
@@ -233,7 +233,8 @@ def test_nobody_reads_reveals_and_later_cards_of_a_lesson_that_is_taught(server:
     lesson_id = desk.teach("POST", LESSONS, TAUGHT)["id"]
     # One room teaches the stored lesson, another one the same document.
     codes = [
-        desk.teach("POST", "/api/v1/rooms", {"lesson": one})["code"] for one in (lesson_id, TAUGHT)
+        desk.teach("POST", "/api/v1/rooms", {"lesson": lesson})["code"]
+        for lesson in (lesson_id, TAUGHT)
     ]
     for code in codes:
         desk.teach("PUT", f"/api/v1/rooms/{code}/card", {"card": 1})
@@ -253,7 +254,11 @@ def test_nobody_reads_reveals_and_later_cards_of_a_lesson_that_is_taught(server:
     def leaks(*headers: str) -> list[str]:
         prefixes = "", f"/r/{codes[0]}"
         addresses = [f"{prefix}{path}" for path in of_lesson for prefix in prefixes]
-        return [one for one in addresses if SECRET.encode() in desk.call("GET", one, *headers)]
+        return [
+            address
+            for address in addresses
+            if SECRET.encode() in desk.call("GET", address, *headers)
+        ]
 
     for who, headers in readers.items():
         assert leaks(*headers) == [], who
@@ -261,7 +266,7 @@ def test_nobody_reads_reveals_and_later_cards_of_a_lesson_that_is_taught(server:
     assert SECRET.encode() in desk.call("GET", address, OPERATOR)
     if desk.status("GET", address) == 200:
         shown = json.loads(desk.call("GET", address).partition(b"\r\n\r\n")[2])
-        assert [one["text"] for one in shown["cards"]] == ["First", "Second"]
+        assert [card["text"] for card in shown["cards"]] == ["First", "Second"]
         assert (shown["is_taught"], len(shown["html"])) == (True, 2)
         # While one room of two goes on.
         desk.teach("POST", f"/api/v1/rooms/{codes[0]}/end", None)
@@ -283,38 +288,38 @@ def test_what_belongs_to_the_room_can_be_read(desks: dict[str, Desk]) -> None:
 
 
 def test_another_room_is_closed_to_a_participant(desks: dict[str, Desk]) -> None:
-    one, other = list(desks.values())[:2]
+    desk, other_desk = list(desks.values())[:2]
     for path in ("predictions", "runs"):
-        address = f"/api/v1/rooms/{other.code}/{path}"
-        assert one.status("POST", address, one.cookie, body={}) == 403
-    address = f"/api/v1/rooms/{other.code}/me"
-    assert one.status("DELETE", address, one.cookie, body={}) == 403
+        address = f"/api/v1/rooms/{other_desk.code}/{path}"
+        assert desk.status("POST", address, desk.cookie, body={}) == 403
+    address = f"/api/v1/rooms/{other_desk.code}/me"
+    assert desk.status("DELETE", address, desk.cookie, body={}) == 403
 
 
 def test_a_tournament_is_for_its_room_alone(desks: dict[str, Desk]) -> None:
-    one, other = list(desks.values())[:2]
-    path = f"/api/v1/tournaments/{one.tournament}"
+    first, second = list(desks.values())[:2]
+    path = f"/api/v1/tournaments/{first.tournament}"
     body = {"agent": "greedy"}
-    for read in (path, f"/r/{one.code}{path}", f"/t/{one.tournament}", "/api/v1/tournaments"):
-        assert one.status("GET", read, one.cookie) == 200, read
-    assert one.status("POST", f"{path}/entries", one.cookie, body=body) == 202
-    assert one.status("POST", f"{path}/entries", one.cookie, body=body) == 200
-    assert other.status("GET", path, other.cookie) == 403
-    assert other.status("POST", f"{path}/entries", other.cookie, body=body) == 403
-    listed = other.call("GET", "/api/v1/tournaments", other.cookie)
-    assert one.tournament.encode() not in listed
-    for desk in (one, other):
+    for read in (path, f"/r/{first.code}{path}", f"/t/{first.tournament}", "/api/v1/tournaments"):
+        assert first.status("GET", read, first.cookie) == 200, read
+    assert first.status("POST", f"{path}/entries", first.cookie, body=body) == 202
+    assert first.status("POST", f"{path}/entries", first.cookie, body=body) == 200
+    assert second.status("GET", path, second.cookie) == 403
+    assert second.status("POST", f"{path}/entries", second.cookie, body=body) == 403
+    listed = second.call("GET", "/api/v1/tournaments", second.cookie)
+    assert first.tournament.encode() not in listed
+    for desk in (first, second):
         assert desk.status("POST", f"{path}/end", desk.cookie, body={}) == 403
         assert desk.status("DELETE", path, desk.cookie) == 403
-    assert one.status("POST", f"{path}/entries", body=body) == 401
-    view = one.teach("GET", path, None)
+    assert first.status("POST", f"{path}/entries", body=body) == 401
+    view = first.teach("GET", path, None)
     assert (view["state"], len(view["entries"])) == ("open", 4)
 
 
 def test_after_the_reveal_others_are_seen(server: Serving) -> None:
     lesson = next(iter(built_in()))
     desk = room_of(server, lesson)
-    number = next(n for n, one in enumerate(built_in()[lesson].cards) if one.go == "training")
+    number = next(n for n, card in enumerate(built_in()[lesson].cards) if card.go == "training")
     path = f"/r/{desk.code}/api/v1/trainings/{desk.other_run}"
     assert desk.status("GET", path, desk.cookie) == 403
     desk.teach("POST", f"/api/v1/rooms/{desk.code}/reveal", {"card": number})
@@ -341,10 +346,10 @@ def test_events_tell_of_own_runs_alone(server: Serving) -> None:
         lines = answer.iter_lines()
         assert "snapshot" in next(lines)
         runs = start(other), start(desk.cookie)
-        told = []
+        received = []
         for line in lines:
-            told.append(line)
+            received.append(line)
             if runs[1] in line and '"state": "finished"' in line:
                 break
-    assert not [line for line in told if runs[0] in line]
-    assert any(line == "event: room" for line in told)
+    assert not [line for line in received if runs[0] in line]
+    assert any(line == "event: room" for line in received)

@@ -116,7 +116,7 @@ class Class:
     """A room, its teacher and pupils, and all that was acknowledged.
 
     Attributes:
-        known: name and seed of each pupil who has joined.
+        joined: name and seed of each pupil who has joined.
         runs: id of each pupil's run.
         facts: what the room says of itself.
     """
@@ -126,14 +126,14 @@ class Class:
         code = self.teacher.call("POST", "/rooms", {"lesson": LESSON}).json()["code"]
         self.room = f"/rooms/{code}"
         self.pupils = [Client(school) for _ in range(PUPILS)]
-        self.known: dict[int, dict[str, Any]] = {}
+        self.joined: dict[int, dict[str, Any]] = {}
         self.runs: dict[int, str] = {}
         self.facts: dict[str, Any] = {"card": 0, "state": "open", "revealed": []}
 
     def join(self, number: int) -> None:
         answer = self.pupils[number].call("POST", f"{self.room}/participants", {})
         assert answer.status_code in (200, 201), answer.text
-        self.known[number] = answer.json()
+        self.joined[number] = answer.json()
 
     def predict(self, number: int) -> None:
         body = {"card": 1, "value": number / 10}
@@ -155,13 +155,16 @@ class Class:
         """Check that nothing that was acknowledged is lost."""
         view = self.teacher.get(self.room)
         assert {name: view[name] for name in self.facts} == self.facts
-        for number, who in self.known.items():
-            own = self.pupils[number].get(self.room)
-            assert own["role"] == "participant"
-            assert (own["me"]["name"], own["me"]["seed"]) == (who["name"], who["seed"])
+        for number, who in self.joined.items():
+            view_of_pupil = self.pupils[number].get(self.room)
+            assert view_of_pupil["role"] == "participant"
+            assert (view_of_pupil["me"]["name"], view_of_pupil["me"]["seed"]) == (
+                who["name"],
+                who["seed"],
+            )
             if number in self.runs:
-                assert [run["run_id"] for run in own["me"]["runs"]] == [self.runs[number]]
-                assert own["me"]["predictions"] == [{"card": 1, "value": number / 10}]
+                assert [run["run_id"] for run in view_of_pupil["me"]["runs"]] == [self.runs[number]]
+                assert view_of_pupil["me"]["predictions"] == [{"card": 1, "value": number / 10}]
 
     def deeds(self) -> list[Callable[[], None]]:
         """Return a lesson, deed by deed."""
@@ -183,7 +186,7 @@ class Class:
         while (result := self.teacher.get(path)["cards"][0])["finished"] < PUPILS:
             stall_check.check(result)
             time.sleep(0.2)
-        return {one["seed"]: one for one in result["entries"] if one["run"] is not None}
+        return {entry["seed"]: entry for entry in result["entries"] if entry["run"] is not None}
 
 
 @pytest.mark.timeout(60 * KILLS + 300)
@@ -200,10 +203,10 @@ def test_a_lesson_goes_on_after_kills(launch: Callable[..., Served]) -> None:
             deed()
         taught.check()
     assert school.kills == KILLS
-    found = taught.results()
-    assert len(found) == PUPILS
-    for number, who in taught.known.items():
-        entry = found[who["seed"]]
+    results = taught.results()
+    assert len(results) == PUPILS
+    for number, who in taught.joined.items():
+        entry = results[who["seed"]]
         assert (entry["prediction"], entry["run"]["id"]) == (number / 10, taught.runs[number])
         if number >= COMPARED:
             continue

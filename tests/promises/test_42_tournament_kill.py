@@ -36,7 +36,7 @@ def look(served: Served, path: str) -> dict[str, Any]:
 
 
 def judged(view: dict[str, Any]) -> list[int]:
-    return [one["judged"] for one in view["entries"]]
+    return [entry["judged"] for entry in view["entries"]]
 
 
 @pytest.mark.timeout(60 * KILLS + 300)
@@ -50,19 +50,21 @@ def test_a_tournament_goes_on_after_kills(launch: Callable[..., Served]) -> None
     for alpha in ALPHAS:
         entry = {"agent": "q-learning", "settings": {"alpha": alpha}}
         assert served.client.post(f"{path}/entries", json=entry).status_code == 202
-    known = [0] * (3 + len(ALPHAS))
+    counts = [0] * (3 + len(ALPHAS))
     for _ in range(KILLS):
-        stall_check, wanted = ProgressTimeout(), sum(known) + chance.randrange(1, 8)
-        while sum(known) < wanted and sum(known) < 10 * len(known):
-            known = judged(look(served, path))
-            stall_check.check(known)
+        stall_check, wanted = ProgressTimeout(), sum(counts) + chance.randrange(1, 8)
+        while sum(counts) < wanted and sum(counts) < 10 * len(counts):
+            counts = judged(look(served, path))
+            stall_check.check(counts)
             time.sleep(0.01)
         time.sleep(chance.uniform(0, 0.1))
         served.end(signal.SIGKILL)
         served = launch()
         after = look(served, path)
-        assert [one["entry"]["settings"].get("alpha") for one in after["entries"][3:]] == [*ALPHAS]
-        assert all(now >= before for now, before in zip(judged(after), known, strict=True))
+        assert [entry["entry"]["settings"].get("alpha") for entry in after["entries"][3:]] == [
+            *ALPHAS
+        ]
+        assert all(now >= before for now, before in zip(judged(after), counts, strict=True))
         assert after["commitment"] == opened.json()["commitment"]
     # Ended, and killed once more before the last is judged.
     assert served.client.post(f"{path}/end").status_code == 200
@@ -72,6 +74,6 @@ def test_a_tournament_goes_on_after_kills(launch: Callable[..., Served]) -> None
     while (view := look(served, path))["state"] != "ended":
         stall_check.check(judged(view))
         time.sleep(0.05)
-    assert judged(view) == [10] * len(known)
+    assert judged(view) == [10] * len(counts)
     file = read_file(served.client.get(f"{path}/file").content, "the file")
     assert verify(file, workers=1) == []

@@ -57,13 +57,13 @@ class Demo(NamedTuple):
     """A demo with an operator's run, and two visitors of whom each has one.
 
     Attributes:
-        of_operator, own, of_other: ids of runs.
+        of_operator, own_run, of_other: ids of runs.
         cookie: header of a visitor.
     """
 
     server: Serving
     of_operator: str
-    own: str
+    own_run: str
     of_other: str
     cookie: str
     code: str
@@ -100,13 +100,15 @@ class Demo(NamedTuple):
 
     def state(self) -> Any:
         """Return what a visitor could change of others, as the operator sees it."""
-        kept = [self.operator("GET", f"runs/{one}") for one in (self.of_operator, self.of_other)]
-        told = [[one[name] for name in ("name", "state", "tags", "notes")] for one in kept]
+        runs = [
+            self.operator("GET", f"runs/{run_id}") for run_id in (self.of_operator, self.of_other)
+        ]
+        run_fields = [[run[name] for name in ("name", "state", "tags", "notes")] for run in runs]
         stage = self.operator("GET", "stage")
         # That anyone joins who has the code is of the room.
-        rooms = [(one["code"], one["state"]) for one in self.operator("GET", "rooms")["items"]]
+        rooms = [(room["code"], room["state"]) for room in self.operator("GET", "rooms")["items"]]
         robots = self.operator("GET", "robots")["items"]
-        return told, stage["run_id"], stage["playing"], stage["clock"], rooms, robots
+        return run_fields, stage["run_id"], stage["playing"], stage["clock"], rooms, robots
 
 
 def visit(server: Serving, body: Any) -> tuple[str, str]:
@@ -116,10 +118,10 @@ def visit(server: Serving, body: Any) -> tuple[str, str]:
         assert answer.status_code == 202, answer.text
         [(name, value)] = api.cookies.items()
     assert name.startswith("hexapods_visitor_")
-    told = answer.headers["set-cookie"]
-    assert "HttpOnly" in told
-    assert "SameSite=Strict" in told
-    assert "Max-Age=86400" in told
+    set_cookie = answer.headers["set-cookie"]
+    assert "HttpOnly" in set_cookie
+    assert "SameSite=Strict" in set_cookie
+    assert "Max-Age=86400" in set_cookie
     return str(answer.json()["id"]), f"{name}={value}"
 
 
@@ -134,10 +136,10 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Demo]:
             code = str(api.post("rooms", json={}).json()["code"])
         other, _ = visit(server, SLOW)
         with server.api() as api:
-            for one in (run, other):
-                wait_until(partial(is_running, api, one))
-        own, cookie = visit(server, BODY)
-        yield Demo(server, run, own, other, cookie, code)
+            for run_id in (run, other):
+                wait_until(partial(is_running, api, run_id))
+        own_run, cookie = visit(server, BODY)
+        yield Demo(server, run, own_run, other, cookie, code)
 
 
 def is_running(api: httpx2.Client, run_id: str) -> bool:
@@ -151,8 +153,8 @@ def may_send(route: Route) -> bool:
 
 
 def test_policies_open_to_visitors_what_is_listed_here() -> None:
-    assert {tuple(route) for route, one in accesses().items() if one is START} == set(STARTS)
-    assert {tuple(route) for route, one in accesses().items() if one is OWN_RUNS} == OF_OWN
+    assert {tuple(route) for route, access in accesses().items() if access is START} == set(STARTS)
+    assert {tuple(route) for route, access in accesses().items() if access is OWN_RUNS} == OF_OWN
     open_to_all = {
         tuple(route)
         for route, access in accesses().items()
@@ -184,7 +186,7 @@ def test_below_a_rooms_path_a_stranger_only_watches(demo: Demo) -> None:
     for route in every_route():
         if route.method in READS or (route.method, route.path) in QUESTIONS | BY_CODE:
             continue
-        assert demo.status(route, demo.own, demo.cookie, prefix) == 403, route
+        assert demo.status(route, demo.own_run, demo.cookie, prefix) == 403, route
 
 
 def test_own_runs_are_stopped_renamed_and_deleted(demo: Demo) -> None:
@@ -194,8 +196,8 @@ def test_own_runs_are_stopped_renamed_and_deleted(demo: Demo) -> None:
         api.cookies.set(name, value)
         assert api.patch(f"runs/{run_id}", json={"name": "Rex"}).json()["name"] == "Rex"
         assert api.get("allowance").json()["runs"] == [run_id]
-        others = httpx2.QueryParams([("id", run_id), ("id", demo.of_other)])
-        assert api.request("DELETE", f"runs?{others}", headers=X).status_code == 403
+        ids = httpx2.QueryParams([("id", run_id), ("id", demo.of_other)])
+        assert api.request("DELETE", f"runs?{ids}", headers=X).status_code == 403
         assert api.post(f"trainings/{run_id}/pause", headers=X).status_code == 403
         assert api.post(f"trainings/{run_id}/stop", headers=X).status_code == 202
         deleted = api.request("DELETE", f"runs?id={run_id}", headers=X).json()
@@ -209,7 +211,7 @@ X = {"X-Requested-With": "tests"}
 def test_operators_are_accepted_everywhere(demo: Demo) -> None:
     run_id, cookie = visit(demo.server, BODY)
     visitors = demo.operator("GET", "visitors")["items"]
-    (visitor,) = (one for one in visitors if run_id in one["runs"])
+    (visitor,) = (visitor_row for visitor_row in visitors if run_id in visitor_row["runs"])
     assert cookie.partition("=")[2] not in json.dumps(visitors)
     demo.operator("DELETE", f"visitors/{visitor['id']}")
     with demo.server.api(TOKEN) as api:
@@ -221,7 +223,7 @@ def test_operators_are_accepted_everywhere(demo: Demo) -> None:
 def test_after_a_day_nothing_is_left_though_the_server_was_down(tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN, demo=1) as server:
         run_id, cookie = visit(server, SLOW)
-        kept, _ = visit(server, BODY)
+        own_id, _ = visit(server, BODY)
         with server.api(TOKEN) as api:
             wait_until(lambda: api.get(f"trainings/{run_id}").json()["progress"]["done"] > 0)
         server.kill()
@@ -229,9 +231,9 @@ def test_after_a_day_nothing_is_left_though_the_server_was_down(tmp_path: Path) 
     # Also of a server that is no demo any more.
     with serving(tmp_path, token=TOKEN) as server, server.api(TOKEN) as api:
         assert api.get(f"trainings/{run_id}").status_code == 404
-        wait_until(lambda: api.get(f"trainings/{kept}").json()["state"] == "finished")
+        wait_until(lambda: api.get(f"trainings/{own_id}").json()["state"] == "finished")
     assert run_id.encode() not in rows_of(tmp_path)
-    assert kept.encode() in rows_of(tmp_path)
+    assert own_id.encode() in rows_of(tmp_path)
     assert cookie.partition("=")[2].encode() not in rows_of(tmp_path)
 
 

@@ -33,8 +33,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _tournament() -> TournamentFile:
-    given: dict[str, Any] = at_length({"robot": HASTY, "steps": 10}, {"steps": 500})
-    return judged(rules_of(simulator="mujoco", gait="tripod", **given), [])
+    options: dict[str, Any] = at_length({"robot": HASTY, "steps": 10}, {"steps": 500})
+    return judged(rules_of(simulator="mujoco", gait="tripod", **options), [])
 
 
 def _verify(file: Path, *options: str) -> subprocess.CompletedProcess[str]:
@@ -54,12 +54,12 @@ def test_with_other_instructions_it_is_said_from_which_step_on_and_that_ranks_ho
 ) -> None:
     done = _verify(folder / "t.json")
     assert done.returncode == 0, done.stdout + done.stderr
-    told = done.stdout.splitlines()[-3:]
-    assert told[0].startswith("Distances differ in their last digits alone, by at most ")
-    assert "e-1" in told[0]
-    assert "all ranks hold; the random walk on draw 1 differs from its step " in told[0]
-    assert told[1].startswith("This is processor ")
-    assert told[2] == f"{folder / 't.json'} repeats but for the last digits of distances."
+    lines = done.stdout.splitlines()[-3:]
+    assert lines[0].startswith("Distances differ in their last digits alone, by at most ")
+    assert "e-1" in lines[0]
+    assert "all ranks hold; the random walk on draw 1 differs from its step " in lines[0]
+    assert lines[1].startswith("This is processor ")
+    assert lines[2] == f"{folder / 't.json'} repeats but for the last digits of distances."
 
 
 def test_what_was_changed_is_told_with_other_instructions_too(folder: Path) -> None:

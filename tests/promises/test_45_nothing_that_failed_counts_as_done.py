@@ -45,7 +45,7 @@ def test_failed_trials_are_told_where_the_result_is_returned_and_printed(
     for shown in (repr(done), done._repr_html_(), text_of(page)):
         assert "2 of 5 trials failed" in shown.replace("&nbsp;", " ")
         assert TRIPPED in shown
-    set_aside = {one["key"]: one["reason"] for one in done.summary["trials"]["set_aside"]}
+    set_aside = {trial["key"]: trial["reason"] for trial in done.summary["trials"]["set_aside"]}
     assert trials_csv(done.config, done.trials, set_aside).decode().count(TRIPPED) == 2
 
 
@@ -61,11 +61,11 @@ def test_a_class_that_no_process_can_import_is_refused_at_the_call() -> None:
     class Local(hx.QLearning):
         pass
 
-    made = types.ModuleType("made_by_hand")
-    made.Agent = type("Agent", (hx.QLearning,), {"__module__": "made_by_hand"})  # type: ignore[attr-defined]
-    sys.modules["made_by_hand"] = made
+    module = types.ModuleType("made_by_hand")
+    module.Agent = type("Agent", (hx.QLearning,), {"__module__": "made_by_hand"})  # type: ignore[attr-defined]
+    sys.modules["made_by_hand"] = module
     try:
-        agents: list[Any] = [Local, lambda: 1, made.Agent, "made_by_hand:Agent"]
+        agents: list[Any] = [Local, lambda: 1, module.Agent, "made_by_hand:Agent"]
         for agent in agents:
             with pytest.raises(hx.InvalidInput, match=r"module|by its name or its class"):
                 hx.experiment("sweep", agents=[agent], seeds=1, steps=5, **QUICK)

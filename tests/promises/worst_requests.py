@@ -26,12 +26,12 @@ BODY_BYTES = 1_000_000
 _PATIENCE_S = 60.0
 
 
-def _repeated(part: str) -> Callable[[int], str]:
-    return lambda size: (part * (size // len(part) + 1))[:size]
+def _repeated(unit: str) -> Callable[[int], str]:
+    return lambda size: (unit * (size // len(unit) + 1))[:size]
 
 
-def _between(first: str, part: str, last: str) -> Callable[[int], str]:
-    return lambda size: f"{first}{_repeated(part)(size - len(first) - len(last))}{last}"
+def _between(first: str, unit: str, last: str) -> Callable[[int], str]:
+    return lambda size: f"{first}{_repeated(unit)(size - len(first) - len(last))}{last}"
 
 
 VALUES: Mapping[str, Callable[[int], str]] = {
@@ -72,12 +72,12 @@ def cookies(port: int) -> Iterator[tuple[str, Callable[[int], str]]]:
     many_codes = list(itertools.islice(codes, HEAD_BYTES // 20))
     for name in NAMES:
         for prefix in ("", "__Host-"):
-            own = f"{prefix}{name}_{port}"
+            cookie_name = f"{prefix}{name}_{port}"
             if name == ROOM_NAME:
-                own = f"{own}_{many_codes[-1]}"
-            yield f"{own} escaped", _between(f'{own}="', '\\"', '"')
-            yield f"{own} many times", _repeated(f"{own}=x; ")
-            yield f"{own} of great length", _between(f"{own}=", "x", "")
+                cookie_name = f"{cookie_name}_{many_codes[-1]}"
+            yield f"{cookie_name} escaped", _between(f'{cookie_name}="', '\\"', '"')
+            yield f"{cookie_name} many times", _repeated(f"{cookie_name}=x; ")
+            yield f"{cookie_name} of great length", _between(f"{cookie_name}=", "x", "")
     rooms = "; ".join(f"{ROOM_NAME}_{port}_{code}=x" for code in many_codes)
     yield "cookies of many rooms", lambda size: rooms[:size]
     sessions = "; ".join(f"{NAME}_{number}=x" for number in range(HEAD_BYTES // 20))
@@ -187,8 +187,8 @@ class Strangers:
         try:
             with socket.create_connection(("127.0.0.1", self._port), _PATIENCE_S, source) as sock:
                 sock.sendall(request)
-                while len(answer) < 1 << 16 and (part := sock.recv(1 << 16)):
-                    answer += part
+                while len(answer) < 1 << 16 and (chunk := sock.recv(1 << 16)):
+                    answer += chunk
                     if _is_whole(answer, has_body=not request.startswith(b"HEAD ")):
                         break
         except (ConnectionResetError, BrokenPipeError):

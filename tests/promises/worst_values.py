@@ -94,8 +94,8 @@ def paths_to_values(shown: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[An
 
 def put_value(shown: Any, path: tuple[Any, ...], value: Any) -> None:
     """Set the value at a path."""
-    for part in path[:-1]:
-        shown = shown[part]
+    for key in path[:-1]:
+        shown = shown[key]
     shown[path[-1]] = value
 
 

@@ -37,16 +37,16 @@ def test_beam_of_the_kinematic_problem_is_as_good_as_greedy() -> None:
 
 def test_search_is_deterministic_at_any_number_of_threads() -> None:
     walk = replace(WALK, world=named_world("limp-pair"))
-    found = {search(build_simulator(walk, threads), width=2, steps=3) for threads in (1, 2)}
+    distances = {search(build_simulator(walk, threads), width=2, steps=3) for threads in (1, 2)}
 
-    assert len(found) == 1
+    assert len(distances) == 1
 
 
 def test_longer_walks_come_farther() -> None:
     simulator = build_simulator(IDEAL)
-    found = [search(simulator, width=4, steps=steps) for steps in (2, 6, 12)]
+    distances = [search(simulator, width=4, steps=steps) for steps in (2, 6, 12)]
 
-    assert all(near < far for near, far in pairwise(found))
+    assert all(near < far for near, far in pairwise(distances))
 
 
 @pytest.mark.promises

@@ -28,8 +28,8 @@ def test_table_says_how_its_distances_were_computed() -> None:
     for row in read(PATH):
         assert row["robot"] in PRESETS
         assert row["world"] in WORLDS
-        own = resolve(CREATURES[row["robot"]].gait, PRESETS[row["robot"]].azimuths_deg).name
-        assert row["gait"] in (*NAMED_GAITS, own)
+        own_gait = resolve(CREATURES[row["robot"]].gait, PRESETS[row["robot"]].azimuths_deg).name
+        assert row["gait"] in (*NAMED_GAITS, own_gait)
         assert row["found_by"] in (*BEAMS, *registered())
         assert (row["found_by"] in BEAMS) == ("width" in row)
     assert all(("stiff", "flat", gait) in kept() for gait in PAPER_GAITS)

@@ -46,7 +46,7 @@ def test_the_defaults_are_the_papers() -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "message"),
+    ("settings", "message"),
     [
         ({"gait": "canter"}, "unknown gait 'canter'"),
         ({"simulator": "gazebo"}, "unknown simulator 'gazebo'; choose one of: mujoco, kinematic"),
@@ -76,10 +76,10 @@ def test_the_defaults_are_the_papers() -> None:
     ],
 )
 def test_invalid_training_is_refused_with_the_valid_values(
-    asked: dict[str, Any], message: str
+    settings: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InvalidInput, match=message):
-        training_config(**{"gait": GAIT, **asked})
+        training_config(**{"gait": GAIT, **settings})
 
 
 def test_a_config_of_an_earlier_version_has_the_reward_of_that_time() -> None:
@@ -129,9 +129,12 @@ class Untunable(QLearning):
 
 
 def test_a_parameter_named_like_a_usual_setting_is_that_setting() -> None:
-    found = agent_settings(f"{__name__}:Older")
-    assert {name: one.default for name, one in found.items()} == {"alpha": 0.3, "gamma": 0.5}
-    assert found["alpha"].valid == "a number over 0 and at most 1"
+    settings = agent_settings(f"{__name__}:Older")
+    assert {name: setting.default for name, setting in settings.items()} == {
+        "alpha": 0.3,
+        "gamma": 0.5,
+    }
+    assert settings["alpha"].valid == "a number over 0 and at most 1"
     assert list(changeable_settings(f"{__name__}:Older")) == ["pace", "alpha", "epsilon"]
 
 

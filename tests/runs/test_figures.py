@@ -35,8 +35,11 @@ pytestmark = [pytest.mark.promises, pytest.mark.timeout(1800)]
 @pytest.fixture(scope="module")
 def rows() -> Rows:
     """Compute the distances of all seeds for every row [h]."""
-    found = in_a_pool(kinematic_rows, range(SEEDS), chunk=20)
-    return {name: np.array([one[name] for one in found if name in one]) for name in found[0]}
+    per_seed = in_a_pool(kinematic_rows, range(SEEDS), chunk=20)
+    return {
+        name: np.array([distances[name] for distances in per_seed if name in distances])
+        for name in per_seed[0]
+    }
 
 
 def share(values: FloatArray) -> float:

@@ -78,11 +78,16 @@ def test_each_pair_swings_a_third_of_the_steps_for_the_share_of_the_swing(
 
 def test_a_window_may_begin_and_end_within_a_step(greedy: RecordedWalk) -> None:
     whole = gait_figures(greedy, 0, 3.0)
-    parts = [gait_figures(greedy, *part) for part in ((0, 1.13), (1.13, 3.0))]
+    figures = [gait_figures(greedy, *window) for window in ((0, 1.13), (1.13, 3.0))]
 
     assert whole is not None
-    assert sum(part.distance_m for part in parts if part) == pytest.approx(whole.distance_m)
-    assert [(part.from_s, part.to_s) for part in parts if part] == [(0, 1.13), (1.13, 3.0)]
+    assert sum(partial.distance_m for partial in figures if partial) == pytest.approx(
+        whole.distance_m
+    )
+    assert [(partial.from_s, partial.to_s) for partial in figures if partial] == [
+        (0, 1.13),
+        (1.13, 3.0),
+    ]
 
 
 @pytest.mark.parametrize("window", [(0.005, 0.015), (0.0, 0.01), (0.0, 0.004), (3.201, 3.219)])
@@ -148,8 +153,8 @@ def test_pitch_is_positive_with_the_front_up_and_roll_with_the_left_side_up(
     poses = motion.qpos.copy()
     poses[:, 3:7] = turned
     step = EvaluatedStep(1, motion._replace(qpos=poses))
-    made = RecordedWalk(poses[0], [step], problem, UNDISTURBED)
-    figures = gait_figures(made, 0, STEP_S)
+    walk = RecordedWalk(poses[0], [step], problem, UNDISTURBED)
+    figures = gait_figures(walk, 0, STEP_S)
 
     assert figures is not None
     assert figures.posture.pitch_range_deg[1] == pytest.approx(10 * signs[0], abs=1e-3)
@@ -230,7 +235,7 @@ def test_long_windows_have_fewer_samples_and_the_same_energy(with_physics: Recor
 
 
 @pytest.mark.parametrize(
-    ("given", "window"),
+    ("bounds", "window"),
     [
         ((None, None), (0, 16.0)),
         ((2.0, None), (2.0, 16.0)),
@@ -240,13 +245,13 @@ def test_long_windows_have_fewer_samples_and_the_same_energy(with_physics: Recor
     ],
 )
 def test_the_window_is_all_that_is_recorded_unless_a_part_is_asked_for(
-    greedy: RecordedWalk, given: tuple[float | None, float | None], window: tuple[float, float]
+    greedy: RecordedWalk, bounds: tuple[float | None, float | None], window: tuple[float, float]
 ) -> None:
-    assert window_of([greedy], *given) == pytest.approx(window)
+    assert window_of([greedy], *bounds) == pytest.approx(window)
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("bounds", "message"),
     [
         ((16.0, None), r"choose a from_s under 16\.00"),
         ((5.0, 5.0), "choose a to_s over 5"),
@@ -254,10 +259,10 @@ def test_the_window_is_all_that_is_recorded_unless_a_part_is_asked_for(
     ],
 )
 def test_a_window_that_is_none_is_refused(
-    greedy: RecordedWalk, given: tuple[float, float | None], message: str
+    greedy: RecordedWalk, bounds: tuple[float, float | None], message: str
 ) -> None:
     with pytest.raises(InvalidInput, match=message):
-        window_of([greedy], *given)
+        window_of([greedy], *bounds)
 
 
 def test_the_newest_steps_of_a_practice_and_its_newest_evaluation() -> None:

@@ -36,7 +36,7 @@ class Eager(Restless):
 
 
 @pytest.mark.parametrize(
-    ("asked", "message"),
+    ("settings", "message"),
     [
         ({"agent": "look-ahead", "depth": 0}, "depth must be a whole number from 1 to 50, not 0"),
         ({"agent": "look-ahead", "width": 2}, "unknown setting of look-ahead 'width'.*: depth"),
@@ -55,9 +55,11 @@ class Eager(Restless):
         ),
     ],
 )
-def test_invalid_lane_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
+def test_invalid_lane_is_refused_with_the_valid_values(
+    settings: dict[str, Any], message: str
+) -> None:
     with pytest.raises(InvalidInput, match=message):
-        lane_config(**asked)
+        lane_config(**settings)
 
 
 def test_a_lane_reads_its_state_as_its_training_did_or_else_as_it_says() -> None:
@@ -73,7 +75,7 @@ NOW, LATER = Slope(degrees=5.0), Limp(legs=(1,), at_step=9)
 
 
 @pytest.mark.parametrize(
-    ("happens", "tolerance", "known"),
+    ("happens", "tolerance", "model"),
     [
         ((), 0.0, "world"),
         ((), 0.03, "world"),
@@ -86,16 +88,16 @@ NOW, LATER = Slope(degrees=5.0), Limp(legs=(1,), at_step=9)
     ],
 )
 def test_what_a_search_knows_by_default_has_a_name(
-    happens: tuple[Any, ...], tolerance: float, known: str
+    happens: tuple[Any, ...], tolerance: float, model: str
 ) -> None:
     walk = WalkingProblem(gait="left-right-origin", world=World(happens), tolerance=tolerance)
-    assert plans_with(lane_config("greedy"), walk) == known
+    assert plans_with(lane_config("greedy"), walk) == model
 
 
 def test_a_search_knows_what_its_lane_says_and_other_agents_plan_with_nothing() -> None:
     walk = WalkingProblem(gait="left-right-origin")
-    for known in ("world", "start", "nominal"):
-        assert plans_with(lane_config("beam", plans_with=known), walk) == known
+    for model in ("world", "start", "nominal"):
+        assert plans_with(lane_config("beam", plans_with=model), walk) == model
     assert plans_with(lane_config("linear-model"), walk) is None
     assert plans_with(LaneConfig(agent="tests.own_agents:ThreeStep"), walk) == "world"
     for agent in ("removed", "no_such_module:Agent", "tests.own_agents:Removed", "os:path"):

@@ -11,12 +11,12 @@ from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
 
-def told(gait: str | GaitSpec, written: Any = "stiff", **given: Any) -> Preview:
-    return preview(WalkingProblem(gait=gait, robot=robot(written), **given))
+def preview_of(gait: str | GaitSpec, written: Any = "stiff", **settings: Any) -> Preview:
+    return preview(WalkingProblem(gait=gait, robot=robot(written), **settings))
 
 
 def test_pairs_and_tripod_of_the_hexapod() -> None:
-    pairs, tripod = told("left-right-origin"), told("tripod")
+    pairs, tripod = preview_of("left-right-origin"), preview_of("tripod")
 
     assert (pairs.states, pairs.actions, pairs.values) == (125, 12, 1500)
     assert (tripod.states, tripod.actions, tripod.values) == (25, 8, 200)
@@ -42,24 +42,24 @@ def test_pairs_and_tripod_of_the_hexapod() -> None:
 def test_the_law_counts_each_group_by_its_share_of_the_feet(
     written: dict[str, int], gait: str | GaitSpec, law_m: float
 ) -> None:
-    assert told(gait, written).law_m == pytest.approx(law_m, abs=5e-4)
+    assert preview_of(gait, written).law_m == pytest.approx(law_m, abs=5e-4)
 
 
 def test_the_links_of_a_standing_robot_end_at_home_on_the_ground() -> None:
-    known = told("tripod", "ant")
+    previewed = preview_of("tripod", "ant")
 
-    for leg in known.legs:
+    for leg in previewed.legs:
         assert leg.links_m is not None
         assert len(leg.links_m) == 4
         *place, height_m = leg.links_m[-1]
         assert place == pytest.approx(leg.home_m)
         assert height_m == pytest.approx(-PRESETS["ant"].body_height_m)
-    short = told("tripod", {"tibia_m": 0.01})
+    short = preview_of("tripod", {"tibia_m": 0.01})
     assert [leg.links_m for leg in short.legs] == [None] * 6
 
 
 def test_a_robot_that_tips_is_offered_other_groups() -> None:
-    pace = told("pace")
+    pace = preview_of("pace")
 
     assert pace.tips
     assert pace.margin_m == pytest.approx(-0.125)
@@ -67,7 +67,7 @@ def test_a_robot_that_tips_is_offered_other_groups() -> None:
     assert pace.better.gait == GaitSpec(1, 2, groups=((1, 3, 5), (2, 4, 6)))
     assert pace.better.margin_m == pytest.approx(0.125)
     assert pace.better.states == 25
-    assert not told(pace.better.gait).tips
+    assert not preview_of(pace.better.gait).tips
 
 
 @pytest.mark.parametrize(
@@ -83,24 +83,24 @@ def test_a_robot_that_tips_is_offered_other_groups() -> None:
 def test_a_learner_is_recommended_by_the_support_margin(
     gait: str, written: Any, agent: str, because: str
 ) -> None:
-    known = told(gait, written)
+    previewed = preview_of(gait, written)
 
-    assert known.recommended_agent == agent
-    assert known.tips == (agent == "multilevel-model")
-    assert re.search(because, known.recommended_because)
+    assert previewed.recommended_agent == agent
+    assert previewed.tips == (agent == "multilevel-model")
+    assert re.search(because, previewed.recommended_because)
 
 
 def test_a_recommended_learner_takes_the_problem() -> None:
     """A body that tips, with too many pairs to plan for, is left to one that does not plan."""
-    known = told("one-by-one", {"n_legs": 3}, divisions=6)
+    previewed = preview_of("one-by-one", {"n_legs": 3}, divisions=6)
 
-    assert known.tips
-    assert known.recommended_agent == "linear-model"
-    assert "too many" in known.recommended_because
+    assert previewed.tips
+    assert previewed.recommended_agent == "linear-model"
+    assert "too many" in previewed.recommended_because
 
 
 def test_where_no_groups_help_none_are_offered() -> None:
-    three = told("one-by-one", {"n_legs": 3})
+    three = preview_of("one-by-one", {"n_legs": 3})
 
     assert three.tips
     assert three.stands
@@ -108,14 +108,17 @@ def test_where_no_groups_help_none_are_offered() -> None:
 
 
 def test_a_table_that_would_not_fit_is_told_with_its_states() -> None:
-    single = told("one-by-one", "centipede")
+    single = preview_of("one-by-one", "centipede")
 
     assert single.states == 5**12
     assert not single.table_fits
 
 
 def test_reach_is_told_by_group_where_feet_may_not_go_everywhere() -> None:
-    near, far = told("one-by-one", grid_side_m=0.02), told("one-by-one", grid_side_m=0.06)
+    near, far = (
+        preview_of("one-by-one", grid_side_m=0.02),
+        preview_of("one-by-one", grid_side_m=0.06),
+    )
 
     assert near.groups[0].ahead_m is None
     assert far.groups[0].ahead_m is not None
@@ -126,7 +129,7 @@ def test_reach_is_told_by_group_where_feet_may_not_go_everywhere() -> None:
 
 
 def test_a_grid_out_of_reach_is_told_at_its_leg() -> None:
-    out = told("tripod", grid_side_m=0.3)
+    out = preview_of("tripod", grid_side_m=0.3)
 
     assert out.out_of_reach is not None
     assert out.out_of_reach.startswith("leg 1 cannot reach cell 1 (front left)")
@@ -137,7 +140,7 @@ def test_a_grid_out_of_reach_is_told_at_its_leg() -> None:
 
 def test_only_the_leg_that_does_not_reach_is_told() -> None:
     legs = [{"azimuth_deg": 60.0 * n, "radius_m": 0.1} for n in range(6)]
-    short = told("tripod", {"legs": [*legs[:2], {**legs[2], "tibia_m": 0.02}, *legs[3:]]})
+    short = preview_of("tripod", {"legs": [*legs[:2], {**legs[2], "tibia_m": 0.02}, *legs[3:]]})
 
     assert [leg.leg for leg in short.legs if leg.out_of_reach] == [3]
     assert short.out_of_reach == short.legs[2].out_of_reach
@@ -146,12 +149,12 @@ def test_only_the_leg_that_does_not_reach_is_told() -> None:
 @pytest.mark.test
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_body_written_out_is_the_same_robot(name: str) -> None:
-    known = told("one-by-one", name)
-    numbers = {part: value for part, value in known.built.items() if value is not None}
-    again = told("one-by-one", {**numbers, "legs": [leg.built for leg in known.legs]})
+    previewed = preview_of("one-by-one", name)
+    numbers = {field: value for field, value in previewed.built.items() if value is not None}
+    again = preview_of("one-by-one", {**numbers, "legs": [leg.built for leg in previewed.legs]})
 
-    assert again.forward_deg == pytest.approx(known.forward_deg)
-    assert again.mass_kg == pytest.approx(known.mass_kg)
-    for one, other in zip(again.legs, known.legs, strict=True):
-        assert one.home_m == pytest.approx(other.home_m)
-        assert one.built == pytest.approx(other.built)
+    assert again.forward_deg == pytest.approx(previewed.forward_deg)
+    assert again.mass_kg == pytest.approx(previewed.mass_kg)
+    for leg, same_leg in zip(again.legs, previewed.legs, strict=True):
+        assert leg.home_m == pytest.approx(same_leg.home_m)
+        assert leg.built == pytest.approx(same_leg.built)

@@ -17,7 +17,7 @@ def test_a_race_has_fifty_steps_by_default() -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "message"),
+    ("fields", "message"),
     [
         ({"lanes": ()}, "a race has 1 to 6 lanes, not 0"),
         ({"lanes": LANES * 7}, "a race has 1 to 6 lanes, not 7"),
@@ -25,6 +25,8 @@ def test_a_race_has_fifty_steps_by_default() -> None:
         ({"seed": -3}, "seed must be a whole number of at least 0"),
     ],
 )
-def test_invalid_race_is_refused_with_the_valid_values(asked: dict[str, Any], message: str) -> None:
+def test_invalid_race_is_refused_with_the_valid_values(
+    fields: dict[str, Any], message: str
+) -> None:
     with pytest.raises(InvalidInput, match=message):
-        RaceConfig(**{"gait": GAIT, "lanes": LANES, **asked})
+        RaceConfig(**{"gait": GAIT, "lanes": LANES, **fields})

@@ -44,9 +44,9 @@ def config(*agents: str, steps: int = 5, seed: int = 0, simulator: Any = "kinema
     )
 
 
-def run(asked: RaceConfig) -> list[RaceRecord]:
-    walkers = build_walkers(asked, [None] * len(asked.lanes), threads=1)
-    return list(race(walkers, asked.steps, ticking()))
+def run(race_config: RaceConfig) -> list[RaceRecord]:
+    walkers = build_walkers(race_config, [None] * len(race_config.lanes), threads=1)
+    return list(race(walkers, race_config.steps, ticking()))
 
 
 def of_lane(records: list[RaceRecord], lane: int) -> list[RaceRecord]:
@@ -78,44 +78,46 @@ def test_step_records_observation_action_and_reward() -> None:
 @pytest.mark.test
 def test_a_lane_is_independent_of_the_other_lanes() -> None:
     alone = of_lane(run(config("greedy", simulator="mujoco", steps=3)), 0)
-    beside = of_lane(run(config("greedy", "greedy", "two-step", simulator="mujoco", steps=3)), 0)
+    with_others = of_lane(
+        run(config("greedy", "greedy", "two-step", simulator="mujoco", steps=3)), 0
+    )
 
-    for one, other in zip(alone, beside, strict=True):
-        assert isinstance(one, LaneStep)
-        assert isinstance(other, LaneStep)
-        assert one.motion.qpos.tobytes() == other.motion.qpos.tobytes()
-        assert (one.action, one.reward_m) == (other.action, other.reward_m)
+    for step, same_step in zip(alone, with_others, strict=True):
+        assert isinstance(step, LaneStep)
+        assert isinstance(same_step, LaneStep)
+        assert step.motion.qpos.tobytes() == same_step.motion.qpos.tobytes()
+        assert (step.action, step.reward_m) == (same_step.action, same_step.reward_m)
 
 
 def test_decision_time_does_not_affect_motion() -> None:
-    asked = config("greedy", "two-step")
+    race_config = config("greedy", "two-step")
     slow, quick = (
-        list(race(build_walkers(asked, [None, None]), asked.steps, ticking(tick)))
+        list(race(build_walkers(race_config, [None, None]), race_config.steps, ticking(tick)))
         for tick in (100.0, 0.001)
     )
 
-    for one, other in zip(slow, quick, strict=True):
-        assert isinstance(one, LaneStep)
-        assert isinstance(other, LaneStep)
-        assert one.decision_s != other.decision_s
-        assert one.motion.qpos.tobytes() == other.motion.qpos.tobytes()
+    for slow_step, quick_step in zip(slow, quick, strict=True):
+        assert isinstance(slow_step, LaneStep)
+        assert isinstance(quick_step, LaneStep)
+        assert slow_step.decision_s != quick_step.decision_s
+        assert slow_step.motion.qpos.tobytes() == quick_step.motion.qpos.tobytes()
 
 
 def test_lanes_of_the_same_agent_have_independent_generators() -> None:
     records = run(config("tests.own_agents:Restless", "tests.own_agents:Restless", steps=8))
-    one, other = (
+    first_actions, second_actions = (
         [r.action for r in of_lane(records, n) if isinstance(r, LaneStep)] for n in (0, 1)
     )
 
-    assert one != other
+    assert first_actions != second_actions
 
 
 @pytest.mark.test
 def test_race_is_deterministic() -> None:
-    asked = config("tests.own_agents:Restless", "greedy", seed=3, simulator="mujoco", steps=3)
+    race_config = config("tests.own_agents:Restless", "greedy", seed=3, simulator="mujoco", steps=3)
 
     def bits() -> list[bytes]:
-        return [r.motion.qpos.tobytes() for r in run(asked) if isinstance(r, LaneStep)]
+        return [r.motion.qpos.tobytes() for r in run(race_config) if isinstance(r, LaneStep)]
 
     assert len(bits()) == 6
     assert bits() == bits()
@@ -146,10 +148,10 @@ def test_failing_agent_ends_its_own_lane_only(agent: str, step: int, reason: str
 @pytest.mark.parametrize("agent", ["tests.own_agents:Restless", "greedy"])
 def test_diverging_physics_ends_the_lane_and_names_the_step(agent: str) -> None:
     """Both in the step itself and in look-ahead, where the agent is not at fault."""
-    asked = config(agent, "greedy", simulator="mujoco", steps=4)
-    walkers = build_walkers(asked, [None, None], threads=1)
+    race_config = config(agent, "greedy", simulator="mujoco", steps=4)
+    walkers = build_walkers(race_config, [None, None], threads=1)
     records = []
-    for record in race(walkers, asked.steps, ticking()):
+    for record in race(walkers, race_config.steps, ticking()):
         records.append(record)
         if (record.lane, record.step) == (0, 2):
             walkers[0].set_state(with_a_broken_joint(walkers[0].state))
@@ -172,11 +174,13 @@ def with_a_broken_joint(state: WalkState) -> MujocoState:
 def test_lane_that_keeps_learning_learns_as_a_training_does(agent: str) -> None:
     """Without practice: the same settings, steps and generator give the same steps and values."""
     lane = lane_config(agent, keep_learning=True, alpha=0.5, epsilon_start=0.3)
-    asked = replace(config("greedy", steps=60, seed=5), lanes=(LaneConfig(agent="greedy"), lane))
-    raced = [r for r in of_lane(run(asked), 1) if isinstance(r, LaneStep)]
+    race_config = replace(
+        config("greedy", steps=60, seed=5), lanes=(LaneConfig(agent="greedy"), lane)
+    )
+    raced = [r for r in of_lane(run(race_config), 1) if isinstance(r, LaneStep)]
     practice = training_config(
         agent,
-        gait=asked.gait,
+        gait=race_config.gait,
         simulator="kinematic",
         steps=60,
         evaluate_every=0,
@@ -186,15 +190,17 @@ def test_lane_that_keeps_learning_learns_as_a_training_does(agent: str) -> None:
     learner.rng.bit_generator.state = generator(5, RACING, 1).bit_generator.state
     trained = [r for r in train(learner, practice, record=True) if isinstance(r, StepTaken)]
 
-    for one, other in zip(raced, trained, strict=True):
-        assert (one.observation, one.action, one.reward_m) == (
-            other.observation,
-            other.action,
-            other.reward_m,
+    for raced_step, trained_step in zip(raced, trained, strict=True):
+        assert (raced_step.observation, raced_step.action, raced_step.reward_m) == (
+            trained_step.observation,
+            trained_step.action,
+            trained_step.reward_m,
         )
-        assert one.action_values is not None
-        assert other.action_values is not None
-        np.testing.assert_array_equal(one.action_values.values, other.action_values.values)
+        assert raced_step.action_values is not None
+        assert trained_step.action_values is not None
+        np.testing.assert_array_equal(
+            raced_step.action_values.values, trained_step.action_values.values
+        )
 
 
 def test_race_does_not_change_the_table_that_its_lanes_learn_from() -> None:
@@ -210,8 +216,8 @@ def test_race_does_not_change_the_table_that_its_lanes_learn_from() -> None:
         lane_config("q-learning", keep_learning=learns, has_training=True)
         for learns in (True, False)
     )
-    asked = replace(config("greedy", steps=20), lanes=lanes)
-    walkers = build_walkers(asked, [table, table])
+    race_config = replace(config("greedy", steps=20), lanes=lanes)
+    walkers = build_walkers(race_config, [table, table])
     records = list(race(walkers, 20, ticking()))
 
     assert to_bytes(table) == before
@@ -229,8 +235,8 @@ def test_learning_belongs_to_the_next_decision() -> None:
 
 def test_agent_that_fails_to_learn_ends_its_own_lane_only() -> None:
     lane = lane_config(f"{__name__}:Unteachable", keep_learning=True)
-    asked = replace(config("greedy", steps=3), lanes=(lane, LaneConfig(agent="greedy")))
-    records = run(asked)
+    race_config = replace(config("greedy", steps=3), lanes=(lane, LaneConfig(agent="greedy")))
+    records = run(race_config)
 
     _, failed = of_lane(records, 0)
     assert isinstance(failed, LaneFailed)
@@ -273,9 +279,9 @@ def test_branch_takes_the_same_steps_to_the_last_bit_until_something_happens(thr
     world = original.world.then(Limp(legs=(1, 4), at_step=4))
     branch = replace(original, world=world, branch_from=Branch("abc", 4))
 
-    def walks(asked: RaceConfig, threads: int) -> list[list[tuple[Any, ...]]]:
-        walkers = build_walkers(asked, [None] * len(lanes), threads=threads)
-        *_, recorded = record_race(walkers, asked, ticking())
+    def walks(race_config: RaceConfig, threads: int) -> list[list[tuple[Any, ...]]]:
+        walkers = build_walkers(race_config, [None] * len(lanes), threads=threads)
+        *_, recorded = record_race(walkers, race_config, ticking())
         return [
             [(s.action, s.reward_m, s.motion.qpos.tobytes()) for s in lane.steps]
             for lane in recorded
@@ -323,12 +329,12 @@ def test_a_branch_does_not_search_again_for_the_steps_it_shares() -> None:
 def test_a_lane_whose_steps_do_not_repeat_decides_by_itself_and_is_named(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    asked = config("greedy", steps=4)
-    steps = [record for record in run(asked) if isinstance(record, LaneStep)]
+    race_config = config("greedy", steps=4)
+    steps = [record for record in run(race_config) if isinstance(record, LaneStep)]
     other_machine = [steps[0], replace(steps[1], reward_m=steps[1].reward_m + 1e-16), steps[2]]
-    walkers = build_walkers(asked, [None], threads=1)
+    walkers = build_walkers(race_config, [None], threads=1)
 
-    again = list(race(walkers, asked.steps, ticking(), [other_machine]))
+    again = list(race(walkers, race_config.steps, ticking(), [other_machine]))
 
     assert [step.action for step in again if isinstance(step, LaneStep)] == [
         step.action for step in steps
@@ -345,12 +351,13 @@ class Unteachable(Restless):
 
 
 def test_recording_has_every_step_and_the_reason_of_a_failure() -> None:
-    asked = config("tests.own_agents:Clumsy", "greedy", steps=3)
-    walkers = build_walkers(asked, [None, None])
+    race_config = config("tests.own_agents:Clumsy", "greedy", steps=3)
+    walkers = build_walkers(race_config, [None, None])
     grown = [
-        [len(lane.steps) for lane in lanes] for lanes in record_race(walkers, asked, ticking())
+        [len(lane.steps) for lane in lanes]
+        for lanes in record_race(walkers, race_config, ticking())
     ]
-    *_, lanes = record_race(build_walkers(asked, [None, None]), asked, ticking())
+    *_, lanes = record_race(build_walkers(race_config, [None, None]), race_config, ticking())
 
     assert grown == [[1, 0], [1, 1], [2, 1], [2, 2], [2, 2], [2, 3]]
     assert lanes[0].failure == "its agent failed: RuntimeError: I tripped"
@@ -360,9 +367,9 @@ def test_recording_has_every_step_and_the_reason_of_a_failure() -> None:
 
 def test_paper_clock_ends_three_lanes_after_16_22_and_91_seconds() -> None:
     """At 0.32 s per motion; decisions without look-ahead take no time."""
-    asked = config("tests.own_agents:Restless", "greedy", "two-step", steps=50)
-    *_, lanes = record_race(build_walkers(asked, [None] * 3), asked, ticking())
-    result = race_result(lanes, asked).lanes
+    race_config = config("tests.own_agents:Restless", "greedy", "two-step", steps=50)
+    *_, lanes = record_race(build_walkers(race_config, [None] * 3), race_config, ticking())
+    result = race_result(lanes, race_config).lanes
     paper = [lane.clocks.paper for lane in result]
 
     assert [round(lane.elapsed_s) for lane in paper] == [16, 22, 91]

@@ -114,14 +114,14 @@ def test_a_disturbed_training_on_mujoco_is_rebuilt_without_physics(agent: str) -
 def test_a_snapshot_goes_on_as_the_learner_did(agent: str) -> None:
     learner, log = practised(agent)
     steps = steps_of(log)
-    kept = fed(rebuild_learner(config_of(agent)), steps[:33]).snapshot()
+    state = fed(rebuild_learner(config_of(agent)), steps[:33]).snapshot()
     again = rebuild_learner(config_of(agent))
-    again.restore(kept)
+    again.restore(state)
     assert again.step == 33
     fed(again, steps[33:])
 
     assert agent_state(again.agent) == agent_state(learner.walker.agent)
-    assert 1000 < kept.size < 300_000
+    assert 1000 < state.size < 300_000
 
 
 @pytest.mark.parametrize("agent", LEARNERS)
@@ -196,12 +196,14 @@ def test_a_lane_is_rebuilt_from_its_recording(agent: str, keep_learning: bool) -
     lane = lane_config(agent, keep_learning=keep_learning, has_training=True)
     config = RaceConfig(gait="left-right-origin", simulator="kinematic", lanes=(lane,), steps=20)
     (walker,) = build_walkers(config, [table])
-    records = [one for one in race([walker], 20, lambda: 0.0) if isinstance(one, LaneStep)]
+    records = [record for record in race([walker], 20, lambda: 0.0) if isinstance(record, LaneStep)]
     rebuilt = rebuild_lane(config, 0, table)
-    for one, after in zip(records, [*records[1:], None], strict=True):
+    for record, after in zip(records, [*records[1:], None], strict=True):
         seen = () if after is None else after.observation
         explained = rebuilt.explain(
-            Logged(one.observation, one.observation, one.action, one.reward_m, seen, seen)
+            Logged(
+                record.observation, record.observation, record.action, record.reward_m, seen, seen
+            )
         )
         assert (explained.update is None) == (not keep_learning or after is None)
 

@@ -71,20 +71,22 @@ def as_file(lanes: list[LaneRecording]) -> bytes:
     return buffer.getvalue()
 
 
-def assert_same(one: LaneStep, other: LaneStep) -> None:
+def assert_same(before: LaneStep, after: LaneStep) -> None:
     for name in ("step", "observation", "action", "reward_m", "distance_m", "transitions"):
-        assert getattr(one, name) == getattr(other, name)
-    assert one.decision_s == other.decision_s
-    for array, again in zip(one.motion, other.motion, strict=True):
+        assert getattr(before, name) == getattr(after, name)
+    assert before.decision_s == after.decision_s
+    for array, again in zip(before.motion, after.motion, strict=True):
         assert (array is None) == (again is None)
         if array is not None and again is not None:
             assert array.dtype == again.dtype
             assert np.array_equal(array, again)
-    assert one.futures == other.futures
-    assert (one.action_values is None) == (other.action_values is None)
-    if one.action_values and other.action_values:
-        assert np.allclose(one.action_values.values, other.action_values.values, equal_nan=True)
-        assert np.array_equal(one.action_values.visits, other.action_values.visits, equal_nan=True)
+    assert before.futures == after.futures
+    assert (before.action_values is None) == (after.action_values is None)
+    if before.action_values and after.action_values:
+        assert np.allclose(before.action_values.values, after.action_values.values, equal_nan=True)
+        assert np.array_equal(
+            before.action_values.visits, after.action_values.visits, equal_nan=True
+        )
 
 
 def test_race_round_trips_through_a_file_without_pickle(
@@ -98,8 +100,8 @@ def test_race_round_trips_through_a_file_without_pickle(
         assert np.array_equal(lane_before.rest_qpos, lane_after.rest_qpos)
         assert lane_after.failure is None
         assert len(lane_after.steps) == 6
-        for one, other in zip(lane_before.steps, lane_after.steps, strict=True):
-            assert_same(one, other)
+        for before, after in zip(lane_before.steps, lane_after.steps, strict=True):
+            assert_same(before, after)
     assert [s.lane for s in back[2].steps] == [2] * 6
     assert [s.action_values is not None for s in (lane.steps[0] for lane in back)] == [1, 0, 0]
 
@@ -199,10 +201,10 @@ def test_practice_recording_stores_the_first_20_and_newest_500_steps() -> None:
         recording.add(taken(number))
         if number % 100 == 0:
             recording.add(Evaluated(number, 0.0, 0.1, None))
-    kept = [s.step for s in recording.steps]
+    stored = [s.step for s in recording.steps]
 
     assert (FIRST_STEPS, NEWEST_STEPS) == (20, 500)
-    assert kept == [*range(1, 21), *range(201, 701)]
+    assert stored == [*range(1, 21), *range(201, 701)]
     assert [e.step for e in recording.evaluations] == [100, 200, 300, 400, 500, 600, 700]
 
 

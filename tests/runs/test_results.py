@@ -29,9 +29,10 @@ def tortoise() -> LaneRecording:
 
 def race_result(lanes: Sequence[LaneRecording]) -> RaceResult:
     """Return the result of a race over two steps."""
-    own = tuple(LaneConfig(agent="greedy") for _ in lanes)
+    lane_configs = tuple(LaneConfig(agent="greedy") for _ in lanes)
     return results.race_result(
-        lanes, RaceConfig(gait="left-right-origin", steps=2, lanes=own, simulator="kinematic")
+        lanes,
+        RaceConfig(gait="left-right-origin", steps=2, lanes=lane_configs, simulator="kinematic"),
     )
 
 
@@ -106,7 +107,7 @@ def test_race_that_is_stopped_before_time_out_ranks_nobody() -> None:
     assert finish_s(lanes, 2, "paper") is None
     assert under(result, "paper", "finished_distance_m") == [None, None]
     assert under(result, "paper", "rank") == [None, None]
-    assert [one.steps for one in result.lanes] == [1, 0]
+    assert [lane_result.steps for lane_result in result.lanes] == [1, 0]
 
 
 def test_lane_that_is_not_computed_up_to_the_first_finish_leaves_the_race_undecided() -> None:

@@ -51,10 +51,10 @@ def stored(recording: PracticeRecording, a_file: int = 3) -> PracticeRecording:
     return practice_recording(through_a_file(practice_arrays(recording)), files)
 
 
-def assert_same(one: PracticeRecording, other: PracticeRecording) -> None:
-    assert np.array_equal(one.rest_qpos, other.rest_qpos)
-    assert len(one.steps) == len(other.steps)
-    for step, same in zip(one.steps, other.steps, strict=True):
+def assert_same(recorded: PracticeRecording, decoded: PracticeRecording) -> None:
+    assert np.array_equal(recorded.rest_qpos, decoded.rest_qpos)
+    assert len(recorded.steps) == len(decoded.steps)
+    for step, same in zip(recorded.steps, decoded.steps, strict=True):
         assert replace(step, motion=None, action_values=None) == replace(
             same, motion=None, action_values=None
         )
@@ -64,17 +64,17 @@ def assert_same(one: PracticeRecording, other: PracticeRecording) -> None:
             for name in ("values", "visits"):
                 before, after = getattr(step.action_values, name), getattr(same.action_values, name)
                 np.testing.assert_allclose(before, after, rtol=1e-6)
-    assert len(one.evaluations) == len(other.evaluations)
-    for evaluation, same_one in zip(one.evaluations, other.evaluations, strict=True):
-        assert replace(evaluation, motion=None) == replace(same_one, motion=None)
-        assert_same_motion(evaluation.motion, same_one.motion)
+    assert len(recorded.evaluations) == len(decoded.evaluations)
+    for evaluation, same_evaluation in zip(recorded.evaluations, decoded.evaluations, strict=True):
+        assert replace(evaluation, motion=None) == replace(same_evaluation, motion=None)
+        assert_same_motion(evaluation.motion, same_evaluation.motion)
 
 
-def assert_same_motion(one: Motion | None, other: Motion | None) -> None:
-    assert (one is None) == (other is None)
-    if one is not None and other is not None:
-        assert np.array_equal(one.time_s, other.time_s)
-        assert np.array_equal(one.qpos, other.qpos)
+def assert_same_motion(before: Motion | None, after: Motion | None) -> None:
+    assert (before is None) == (after is None)
+    if before is not None and after is not None:
+        assert np.array_equal(before.time_s, after.time_s)
+        assert np.array_equal(before.qpos, after.qpos)
 
 
 @pytest.mark.parametrize(("steps", "simulator"), [(35, "mujoco"), (700, "kinematic")])

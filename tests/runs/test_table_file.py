@@ -94,10 +94,10 @@ def test_invalid_file_is_refused(
         opened(changed(**changes))
 
 
-@pytest.mark.parametrize("kept", [0, 10, 100, -30])
-def test_truncated_file_is_refused(kept: int) -> None:
+@pytest.mark.parametrize("length", [0, 10, 100, -30])
+def test_truncated_file_is_refused(length: int) -> None:
     with pytest.raises(DamagedFile, match="not a Q-table"):
-        opened(changed()[:kept])
+        opened(changed()[:length])
 
 
 def test_values_out_of_order_are_refused() -> None:

@@ -51,13 +51,13 @@ TABLE = trained()
 FILE = to_bytes(TABLE)
 
 
-def same(one: Checkpoint, other: Checkpoint) -> bool:
+def same(before: Checkpoint, after: Checkpoint) -> bool:
     return (
-        one.meta == other.meta
-        and set(one.arrays) == set(other.arrays)
+        before.meta == after.meta
+        and set(before.arrays) == set(after.arrays)
         and all(
-            a.dtype == other.arrays[name].dtype and a.tobytes() == other.arrays[name].tobytes()
-            for name, a in one.arrays.items()
+            a.dtype == after.arrays[name].dtype and a.tobytes() == after.arrays[name].tobytes()
+            for name, a in before.arrays.items()
         )
     )
 

@@ -133,11 +133,11 @@ def test_step_records_observation_and_action_values() -> None:
 
 def test_reference_is_yielded_once_before_the_first_evaluation() -> None:
     _, records = run(replace(CONFIG, steps=120))
-    told = [r for r in records if isinstance(r, Reference | Evaluated)]
+    evaluations = [r for r in records if isinstance(r, Reference | Evaluated)]
 
-    assert isinstance(told[0], Reference)
-    assert told[0].greedy_distance_m == pytest.approx(24.833 * 0.02, abs=1e-4)
-    assert [r.step for r in told[1:] if isinstance(r, Evaluated)] == [50, 100, 120]
+    assert isinstance(evaluations[0], Reference)
+    assert evaluations[0].greedy_distance_m == pytest.approx(24.833 * 0.02, abs=1e-4)
+    assert [r.step for r in evaluations[1:] if isinstance(r, Evaluated)] == [50, 100, 120]
     assert isinstance(records[-1], Evaluated)
 
 
@@ -246,8 +246,8 @@ def test_training_resumed_from_a_checkpoint_equals_the_unbroken_run(
     after = list(train(second, config))
 
     assert everything(second) == everything(unbroken)
-    told = [r for r in records if isinstance(r, Reference) or r.step > broken_at]
-    assert after == told[-len(after) :]
+    later_records = [r for r in records if isinstance(r, Reference) or r.step > broken_at]
+    assert after == later_records[-len(after) :]
 
 
 def test_pending_evaluation_is_repeated_after_resume() -> None:
@@ -429,9 +429,9 @@ def test_what_happens_while_it_runs_equals_what_was_planned() -> None:
     planned = replace(EVENTFUL, world=World((Limp(legs=(1, 4), at_step=7),)))
     calm = replace(planned, world=World())
     live = build_learner(calm)
-    told = []
+    live_records = []
     for record in train(live, calm):
-        told.append(record)
+        live_records.append(record)
         if isinstance(record, StepTaken) and record.step == 7:
             live.disturb(Limp(legs=(1, 4)), calm)
     expected, records = run(planned)
@@ -439,7 +439,7 @@ def test_what_happens_while_it_runs_equals_what_was_planned() -> None:
     assert live.world == planned.world
     assert everything(live) == everything(expected)
     for kind in (StepTaken, Evaluated):
-        of_both = [[r for r in some if isinstance(r, kind)] for some in (told, records)]
+        of_both = [[r for r in some if isinstance(r, kind)] for some in (live_records, records)]
         assert [r.distance_m for r in of_both[0]] == [r.distance_m for r in of_both[1]]
         assert [r.epsilon for r in of_both[0]] == [r.epsilon for r in of_both[1]]
 

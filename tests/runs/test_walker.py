@@ -79,7 +79,9 @@ def test_the_heading_is_how_far_the_robot_has_turned_to_the_left() -> None:
         state = simulator.step(state, Action(step % 3, 1 + step // 3 % 2)).state
     sensors.at(state)
 
-    start, torso = (simulator.torso(one) for one in (simulator.rest(), state))
+    start, torso = (
+        simulator.torso(simulator_state) for simulator_state in (simulator.rest(), state)
+    )
     assert at_rest_rad == 0
     assert abs(sensors.heading_rad) > 0.01
     assert sensors.heading_rad == pytest.approx(math.radians(heading_deg(torso, start)))

@@ -30,8 +30,8 @@ def test_a_moment_does_not_depend_on_those_before(parts: StageParts) -> None:
     seen, fresh = watched.frame_at(2.5), replays_of(parts).get(run.id, "paper").frame_at(2.5)
 
     assert seen.scene() == fresh.scene()
-    for one, other in zip(seen.lanes, fresh.lanes, strict=True):
-        assert np.array_equal(one.qpos, other.qpos)
+    for seen_lane, fresh_lane in zip(seen.lanes, fresh.lanes, strict=True):
+        assert np.array_equal(seen_lane.qpos, fresh_lane.qpos)
 
 
 def test_poses_at_the_ends_of_steps_are_those_that_were_simulated(parts: StageParts) -> None:
@@ -86,19 +86,19 @@ def test_replays_are_kept_up_to_the_size_of_their_recordings(parts: StageParts) 
     recording = parts.recordings.training(runs[0].id)
     assert recording is not None
     replays = replays_of(parts)
-    kept = [replays.get(run.id, "paper") for run in runs]
-    assert [replays.get(run.id, "paper") for run in runs] == kept
-    assert 40 * 25 * 4 < kept[0].size < recording.size, "it shows no evaluation's motion"
+    cached = [replays.get(run.id, "paper") for run in runs]
+    assert [replays.get(run.id, "paper") for run in runs] == cached
+    assert 40 * 25 * 4 < cached[0].size < recording.size, "it shows no evaluation's motion"
     with_ghost = replays.get(runs[0].id, "paper", runs[1].id)
-    assert with_ghost.size == kept[0].size + kept[1].size
+    assert with_ghost.size == cached[0].size + cached[1].size
 
-    two = Replays(parts.store, parts.recordings, sum(replay.size for replay in kept[-2:]))
+    two = Replays(parts.store, parts.recordings, sum(replay.size for replay in cached[-2:]))
     first, *newer = (two.get(run.id, "paper") for run in (runs[0], *runs[-2:]))
     assert [two.get(run.id, "paper") for run in runs[-2:]] == newer
     assert two.get(runs[0].id, "paper") is not first
-    one = Replays(parts.store, parts.recordings, 1)
-    newest = one.get(runs[1].id, "paper")
-    assert one.get(runs[1].id, "paper") is newest
+    smallest = Replays(parts.store, parts.recordings, 1)
+    newest = smallest.get(runs[1].id, "paper")
+    assert smallest.get(runs[1].id, "paper") is newest
 
 
 def test_a_renamed_run_is_replayed_under_its_new_name(parts: StageParts) -> None:
@@ -153,10 +153,10 @@ def test_lanes_of_another_run_walk_along_as_ghosts_at_their_own_time(parts: Stag
     other = parts.finished_race(("two-step", "greedy"), 8)
     replays = replays_of(parts)
     alone = replays.get(other.id, "paper")
-    both = replays.get(run.id, "paper", other.id)
+    with_ghosts = replays.get(run.id, "paper", other.id)
 
-    for time_s in (0.0, 1.7, 3.0, both.recorded[-1][1]):
-        frame, expected = both.frame_at(time_s), alone.frame_at(time_s)
+    for time_s in (0.0, 1.7, 3.0, with_ghosts.recorded[-1][1]):
+        frame, expected = with_ghosts.frame_at(time_s), alone.frame_at(time_s)
         assert (
             frame.lanes[0].distance_m
             == replays.get(run.id, "paper").frame_at(time_s).lanes[0].distance_m
@@ -166,21 +166,21 @@ def test_lanes_of_another_run_walk_along_as_ghosts_at_their_own_time(parts: Stag
             assert np.array_equal(ghost.qpos, lane.qpos)
         named = [(ghost["name"], ghost["step"]) for ghost in frame.scene()["ghost_lanes"]]
         assert named == [("Two-step", shown[0].step), ("Greedy", shown[1].step)]
-    assert both.plan()["ghost_id"] == other.id
-    assert both.version != replays.get(run.id, "paper").version
+    assert with_ghosts.plan()["ghost_id"] == other.id
+    assert with_ghosts.version != replays.get(run.id, "paper").version
 
 
 def test_two_practices_walk_side_by_side(parts: StageParts) -> None:
     run, other = parts.finished_training(30), parts.finished_training(20, agent="sarsa")
-    both, alone = (
+    with_ghosts, alone = (
         replays_of(parts).get(*ids) for ids in ((run.id, "paper", other.id), (other.id, "paper"))
     )
 
-    frame = both.frame_at(4.0)
+    frame = with_ghosts.frame_at(4.0)
     (ghost,) = frame.ghost_lanes
     assert ghost is not None
     assert np.array_equal(ghost.qpos, alone.frame_at(4.0).lanes[0].qpos)
-    late = both.frame_at(both.recorded[-1][1])
+    late = with_ghosts.frame_at(with_ghosts.recorded[-1][1])
     assert (late.lanes[0].step, late.scene()["ghost_lanes"][0]["step"]) == (30, 20), "it waits"
 
 

@@ -145,9 +145,9 @@ def test_any_sequence_keeps_the_rules(commands: list[tuple[str, ...]]) -> None:
         assert all(states[run.id] == run.state for run in state.playlist)
         assert not any(run.is_void for run in state.playlist[1:])
         if before.origin == "chosen" and verb not in ("show", "remove"):
-            kept = [run.id for run in state.playlist]
-            assert kept[:1] == [run.id for run in before.playlist][:1]
-            assert set(kept) <= {run.id for run in before.playlist}
+            playlist = [run.id for run in state.playlist]
+            assert playlist[:1] == [run.id for run in before.playlist][:1]
+            assert set(playlist) <= {run.id for run in before.playlist}
             assert state.announced is None
         if state.announced is not None:
             assert state.may_announce

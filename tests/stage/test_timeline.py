@@ -17,8 +17,8 @@ def walker(steps: int) -> LaneRecording:
 
 
 def told(steps: int) -> dict[str, object]:
-    (one,) = timeline([walker(steps)], [None], 100, "wall")["lanes"]
-    shown: dict[str, object] = one
+    (lane,) = timeline([walker(steps)], [None], 100, "wall")["lanes"]
+    shown: dict[str, object] = lane
     return shown
 
 
@@ -28,7 +28,7 @@ def test_each_step_is_told_with_its_thinking() -> None:
     assert (shown["steps"], shown["stride"]) == (3, 1)
     assert shown["futures"] == [1, 2, 3]
     thinking = [(0, 0.1), (1.1, 1.2), (2.2, 2.3)]
-    assert shown["thinking"] == [pytest.approx(one) for one in thinking]
+    assert shown["thinking"] == [pytest.approx(span) for span in thinking]
     points = [(0, 0), (0.1, 0), (1.1, 0.01), (1.2, 0.01), (2.2, 0.02), (2.3, 0.02), (3.3, 0.03)]
     assert shown["points"] == [pytest.approx(point) for point in points]
 

@@ -76,17 +76,17 @@ class Events:
 
     def until(self, wanted: str, **fields: Any) -> list[tuple[str, Any]]:
         """Return the events up to the first of this name whose data has these fields."""
-        told: list[tuple[str, Any]] = []
+        events: list[tuple[str, Any]] = []
         name = ""
         for line in self._lines:
             field, _, value = line.partition(": ")
             if field == "event":
                 name = value
             elif field == "data":
-                told.append((name, json.loads(value)))
-                if name == wanted and fields.items() <= told[-1][1].items():
-                    return told
-        raise AssertionError(told)
+                events.append((name, json.loads(value)))
+                if name == wanted and fields.items() <= events[-1][1].items():
+                    return events
+        raise AssertionError(events)
 
 
 class Lanes:
@@ -122,48 +122,48 @@ class Lanes:
                 self.read(0.5)
 
 
-class Both(NamedTuple):
+class TwoStages(NamedTuple):
     """Clients of both stages of an app, and the races that they show, of two lanes and of one."""
 
-    one: Client
-    other: Client
+    first: Client
+    second: Client
     duel: str
     solo: str
 
 
 @pytest.fixture(scope="module")
-def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Both]:
+def stages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TwoStages]:
     data = tmp_path_factory.mktemp("data")
-    with two_stages(data) as port, Client(port, "") as one, Client(port, SECOND) as other:
-        yield Both(one, other, one.race("greedy", "two-step"), other.race("greedy"))
+    with two_stages(data) as port, Client(port, "") as first, Client(port, SECOND) as second:
+        yield TwoStages(first, second, first.race("greedy", "two-step"), second.race("greedy"))
 
 
-def test_each_stage_has_its_show_its_pause_its_events_and_its_viewers(both: Both) -> None:
-    one, other, duel, solo = both
-    with one.events() as told, other.events() as other_told:
-        assert told.until("snapshot")[0][1]["role"] == "operator"
-        other_told.until("snapshot")
-        one.put(run_id=duel, speed=0.25, time_s=0.0)
-        other.put(run_id=solo, speed=0.5, time_s=0.0)
-        with Viewer(one.socket) as viewer, Viewer(other.socket) as other_viewer:
+def test_each_stage_has_its_show_its_pause_its_events_and_its_viewers(stages: TwoStages) -> None:
+    first, second, duel, solo = stages
+    with first.events() as stream, second.events() as other_stream:
+        assert stream.until("snapshot")[0][1]["role"] == "operator"
+        other_stream.until("snapshot")
+        first.put(run_id=duel, speed=0.25, time_s=0.0)
+        second.put(run_id=solo, speed=0.5, time_s=0.0)
+        with Viewer(first.socket) as viewer, Viewer(second.socket) as other_viewer:
             lanes, other_lanes = Lanes(viewer), Lanes(other_viewer)
             lanes.see(2)
             other_lanes.see(1)
 
-            other.put(playing=False)
+            second.put(playing=False)
             other_lanes.rest()
-            paused, playing = other.stage(), one.stage()
+            paused, playing = second.stage(), first.stage()
             for _ in range(20):
                 lanes.read()
             assert (paused["run_id"], paused["playing"]) == (solo, False)
             assert (playing["run_id"], playing["playing"], playing["speed"]) == (duel, True, 0.25)
-            assert other.stage()["time_s"] == paused["time_s"]
-            assert one.stage()["time_s"] > playing["time_s"]
+            assert second.stage()["time_s"] == paused["time_s"]
+            assert first.stage()["time_s"] > playing["time_s"]
             assert (len(lanes.names), len(other_lanes.names)) == (2, 1)
-        one.put(speed=4)
-        other.put(speed=2)
-        events = told.until("stage", speed=4)
-        other_events = other_told.until("stage", speed=2)
+        first.put(speed=4)
+        second.put(speed=2)
+        events = stream.until("stage", speed=4)
+        other_events = other_stream.until("stage", speed=2)
 
     for events_of_one, run_id in ((events, duel), (other_events, solo)):
         shown = [
@@ -171,24 +171,24 @@ def test_each_stage_has_its_show_its_pause_its_events_and_its_viewers(both: Both
         ]
         # A frame of the run before may be published after the command.
         started = shown.index(("scene", run_id))
-        assert {one for _, one in shown[started:]} == {run_id}
+        assert {scene_run for _, scene_run in shown[started:]} == {run_id}
         assert max(data["count"] for name, data in events_of_one if name == "viewers") == 1
     assert all(data["playing"] for name, data in events if name == "stage")
     assert not all(data["playing"] for name, data in other_events if name == "stage")
 
 
-def test_events_of_a_run_reach_both_stages(both: Both) -> None:
-    with both.one.events() as told, both.other.events() as other_told:
-        told.until("snapshot")
-        other_told.until("snapshot")
-        both.one.http.patch(f"/api/v1/runs/{both.duel}", json={"name": "a duel"})
-        told.until("run", name="a duel")
-        other_told.until("run", name="a duel")
+def test_events_of_a_run_reach_both_stages(stages: TwoStages) -> None:
+    with stages.first.events() as stream, stages.second.events() as other_stream:
+        stream.until("snapshot")
+        other_stream.until("snapshot")
+        stages.first.http.patch(f"/api/v1/runs/{stages.duel}", json={"name": "a duel"})
+        stream.until("run", name="a duel")
+        other_stream.until("run", name="a duel")
 
 
-def test_each_stage_has_its_roles(both: Both) -> None:
+def test_each_stage_has_its_roles(stages: TwoStages) -> None:
     change: dict[str, Any] = {"json": {"speed": 1}}
-    for client, stranger in (both.one, both.other), (both.other, both.one):
+    for client, stranger in (stages.first, stages.second), (stages.second, stages.first):
         token = stranger.http.headers["authorization"]
         refused = client.http.put("/api/v1/stage", headers={"Authorization": token}, **change)
         assert refused.status_code == 401
@@ -196,8 +196,8 @@ def test_each_stage_has_its_roles(both: Both) -> None:
         assert read.status_code == 200
 
 
-def test_one_browser_has_a_session_of_each_stage(both: Both) -> None:
-    server = str(both.one.http.base_url).rstrip("/")
+def test_one_browser_has_a_session_of_each_stage(stages: TwoStages) -> None:
+    server = str(stages.first.http.base_url).rstrip("/")
     with httpx2.Client(base_url=server, trust_env=False, verify=False) as browser:
         for path, token in TOKENS.items():
             opened = browser.get(f"{path}/?token={token}")
@@ -206,11 +206,11 @@ def test_one_browser_has_a_session_of_each_stage(both: Both) -> None:
             assert browser.put(f"{path}/api/v1/stage", json={"speed": 1}).status_code == 200
 
 
-def test_page_and_its_files_are_below_the_path_of_each_stage(both: Both) -> None:
-    for client in both.one, both.other:
+def test_page_and_its_files_are_below_the_path_of_each_stage(stages: TwoStages) -> None:
+    for client in stages.first, stages.second:
         for path in ("/", "/static/favicon.svg", "/viewer/", "/api/v1/options", "/healthz"):
             assert client.http.get(path).status_code == 200, (client.path, path)
-    assert both.one.http.get(f"{SECOND}s/api/v1/stage").status_code == 404
+    assert stages.first.http.get(f"{SECOND}s/api/v1/stage").status_code == 404
 
 
 def test_stage_that_is_closed_ends_its_events_and_leaves_the_other(parts: StageParts) -> None:
@@ -225,14 +225,14 @@ def test_stage_that_is_closed_ends_its_events_and_leaves_the_other(parts: StageP
         )
 
     async def test() -> None:
-        async with shared("") as one, shared(SECOND) as other:
-            kept, ended = one.channel.subscribe(), other.channel.subscribe()
-            await other.close()
-            one.stage.set(playing=False)
-            other.stage.set(playing=False)
-            for subscription in ended, other.channel.subscribe():
+        async with shared("") as first, shared(SECOND) as second:
+            subscribed, ended = first.channel.subscribe(), second.channel.subscribe()
+            await second.close()
+            first.stage.set(playing=False)
+            second.stage.set(playing=False)
+            for subscription in ended, second.channel.subscribe():
                 assert {event.event async for event in subscription} <= {"scene"}
-            async for event in kept:
+            async for event in subscribed:
                 if event.event == "stage":
                     break
 

@@ -69,13 +69,13 @@ def ended_race(store: RunStore, run_id: str, training_id: str, **walk: Any) -> R
     )
     *_, recorded = record_race(build_walkers(config, [table, None]), config, time.perf_counter)
     recordings = Recordings(store)
-    recordings.begin_race(run_id, [LaneRecording(one.agent, one.rest_qpos) for one in recorded])
-    for steps in zip(*(one.steps for one in recorded), strict=True):
+    recordings.begin_race(run_id, [LaneRecording(lane.agent, lane.rest_qpos) for lane in recorded])
+    for steps in zip(*(lane.steps for lane in recorded), strict=True):
         for step in steps:
             recordings.add(run_id, step)
     recordings.finish(run_id)
-    first, *others = race_result(recorded, config).lanes
-    result = RaceResult(lanes=(replace(first, training_id=training_id), *others))
+    first, *rest = race_result(recorded, config).lanes
+    result = RaceResult(lanes=(replace(first, training_id=training_id), *rest))
     return store.change(run_id, {"queued"}, "finished", done=16, result=result)
 
 

@@ -31,13 +31,13 @@ def test_failed_write_leaves_nothing_behind(
     def full(handle: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    kept = files.write(b"old")
+    stored = files.write(b"old")
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", full)
         with pytest.raises(StorageFull, match="make room"):
             files.write(b"new")
-    assert names(tmp_path) == [kept.file]
-    assert files.read(kept, "it") == b"old"
+    assert names(tmp_path) == [stored.file]
+    assert files.read(stored, "it") == b"old"
 
 
 def test_missing_folder_is_reported(files: ArtifactFiles, tmp_path: Path) -> None:
@@ -50,10 +50,10 @@ def test_missing_folder_is_reported(files: ArtifactFiles, tmp_path: Path) -> Non
 def test_damaged_file_is_named_in_the_error(
     files: ArtifactFiles, tmp_path: Path, damaged: bytes
 ) -> None:
-    kept = files.write(b"whole")
-    (tmp_path / "files" / kept.file).write_bytes(damaged)
+    stored = files.write(b"whole")
+    (tmp_path / "files" / stored.file).write_bytes(damaged)
     with pytest.raises(DamagedFile, match="the table of Ben is damaged"):
-        files.read(kept, "the table of Ben")
+        files.read(stored, "the table of Ben")
 
 
 def test_missing_file_is_named_in_the_error(tmp_path: Path) -> None:
@@ -90,11 +90,11 @@ def test_quota_is_enforced(tmp_path: Path) -> None:
     disk_space = DiskSpace(tmp_path, quota_mb=10)
     (tmp_path / "files").mkdir()
     files = ArtifactFiles(tmp_path / "files", disk_space)
-    kept = [files.write(bytes(3 * MB)) for _ in range(3)]
+    stored = [files.write(bytes(3 * MB)) for _ in range(3)]
     with pytest.raises(StorageFull, match=r"10 MB.*3\.0 MB more.*HEXAPODS_QUOTA_MB"):
         files.write(bytes(3 * MB))
     assert len(names(tmp_path)) == 3
-    files.remove(kept[0].file)
+    files.remove(stored[0].file)
     files.write(bytes(3 * MB))
 
 

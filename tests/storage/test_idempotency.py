@@ -130,8 +130,8 @@ def test_keys_expire_after_a_day_or_beyond_the_maximum(
     for number in range(10):
         monkeypatch.setattr(Clock, "ahead", Clock.ahead + timedelta(seconds=1))
         run_of(idempotency, f"key {number}", b"x", start)
-    kept = [n for n in range(10) if store.keys.find(f"key {n}") is not None]
-    assert kept == [5, 6, 7, 8, 9]
+    left = [n for n in range(10) if store.keys.find(f"key {n}") is not None]
+    assert left == [5, 6, 7, 8, 9]
 
 
 def test_a_key_whose_row_is_damaged_starts_no_second_run(store: RunStore) -> None:

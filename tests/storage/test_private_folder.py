@@ -29,10 +29,10 @@ def test_a_new_folder_is_closed_whatever_the_umask(tmp_path: Path) -> None:
     try:
         with open_store(Settings(data=tmp_path / "above" / "data")) as store:
             store.create(training("t1"))
-            found = modes(tmp_path / "above" / "data")
+            modes_in_folder = modes(tmp_path / "above" / "data")
             names = (DATABASE_FILE, f"{DATABASE_FILE}-wal", f"{DATABASE_FILE}-shm", LOCK_FILE)
-            assert {found[name] for name in names} == {0o600}
-            assert found["data"] == found[ARTIFACTS_FOLDER] == 0o700
+            assert {modes_in_folder[name] for name in names} == {0o600}
+            assert modes_in_folder["data"] == modes_in_folder[ARTIFACTS_FOLDER] == 0o700
     finally:
         os.umask(before)
     # Folders above are no business of the server.
@@ -61,9 +61,9 @@ def test_a_folder_with_other_things_stays_as_it_is(
     (tmp_path / "site").mkdir()
     open_to_all(tmp_path)
     make_private(tmp_path, ENTRIES)
-    found = modes(tmp_path)
-    assert (found.pop(tmp_path.name), found.pop("site")) == (0o755, 0o755)
-    assert all(mode & 0o077 == 0 for mode in found.values())
+    modes_in_folder = modes(tmp_path)
+    assert (modes_in_folder.pop(tmp_path.name), modes_in_folder.pop("site")) == (0o755, 0o755)
+    assert all(mode & 0o077 == 0 for mode in modes_in_folder.values())
     assert exposed_paths(tmp_path, ENTRIES) == [tmp_path]
     assert f"can open {tmp_path};" in caplog.text
 

@@ -98,7 +98,13 @@ def test_evaluations_of_a_long_training_are_not_all_in_memory(store: RunStore) -
     growing = recordings.training("a")
     assert growing is not None
     # Those of the last file, which will be written again, and in any case the newest one.
-    assert [one.step for one in growing.evaluations if one.motion] == [410, 420, 430, 440, 450]
+    assert [evaluation.step for evaluation in growing.evaluations if evaluation.motion] == [
+        410,
+        420,
+        430,
+        440,
+        450,
+    ]
     recordings.finish("a")
     assert_stored(store, practised)
 
@@ -116,10 +122,10 @@ def of_newest_motion(recording: PracticeRecording) -> PracticeRecording:
     """Return a recording as it is read: of its evaluations only the newest has its motion."""
     *earlier, newest = recording.evaluations
     shown = PracticeRecording(recording.rest_qpos)
-    stripped = [replace(one, motion=None) for one in earlier]
+    stripped = [replace(evaluation, motion=None) for evaluation in earlier]
     records: list[StepTaken | Evaluated] = [*recording.steps, *stripped, newest]
-    for one in records:
-        shown.add(one)
+    for step_or_evaluation in records:
+        shown.add(step_or_evaluation)
     return shown
 
 

@@ -14,7 +14,9 @@ def test_sessions_survive_a_restart_but_not_a_new_token(store: RunStore) -> None
     sessions.close(second)
     assert first != second
     again = Sessions(store.sessions, TOKEN)
-    assert [again.is_open(one) for one in (first, second, "", "guess")] == [True] + 3 * [False]
+    assert [again.is_open(session) for session in (first, second, "", "guess")] == [True] + 3 * [
+        False
+    ]
     stored = store.sessions.load()
     assert len(stored) == 1
     assert first not in str(stored)
@@ -43,7 +45,7 @@ def test_oldest_session_is_closed_beyond_the_maximum(store: RunStore) -> None:
     rows = store.sessions
     sessions = Sessions(rows, TOKEN)
     first = sessions.open()
-    others = [sessions.open() for _ in range(MAX_SESSIONS)]
+    later_sessions = [sessions.open() for _ in range(MAX_SESSIONS)]
     assert not sessions.is_open(first)
-    assert all(map(sessions.is_open, others))
+    assert all(map(sessions.is_open, later_sessions))
     assert len(rows.load()) == MAX_SESSIONS

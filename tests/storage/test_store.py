@@ -89,9 +89,9 @@ def test_run_with_an_impossible_number_is_damaged(
 ) -> None:
     """JSON has no NaN."""
     store.create(training("a", **damage))
-    found = store.find("a")
-    assert isinstance(found, DamagedRun)
-    assert reason in found.damaged
+    damaged = store.find("a")
+    assert isinstance(damaged, DamagedRun)
+    assert reason in damaged.damaged
 
 
 def test_nan_in_a_result_is_what_was_not_measured(store: RunStore) -> None:
@@ -239,8 +239,8 @@ def test_a_forged_cursor_is_taken_or_refused(store: RunStore) -> None:
     store.create(training("a"), training("b"))
     keys = [0.5, 5, -0.0, 1e999, math.nan, True, None, "b", "a\0", "\ud800", [0.5], {"a": "b"}]
     ids = ["a", "", 5, True, None, "a\0", "\ud800", "damaged-", [0.5]]
-    for given in [*product(keys, ids), ["b"], [0.5, "b", "c"], {"a": 1, "b": 2}, 7, "ab"]:
-        cursor = base64.urlsafe_b64encode(json.dumps(given).encode()).decode()
+    for key in [*product(keys, ids), ["b"], [0.5, "b", "c"], {"a": 1, "b": 2}, 7, "ab"]:
+        cursor = base64.urlsafe_b64encode(json.dumps(key).encode()).decode()
         for sort in SORTS:
             with contextlib.suppress(InvalidInput):
                 store.list(sort=sort, cursor=cursor)
@@ -292,7 +292,9 @@ def test_only_a_running_run_has_an_estimate(store: RunStore, state: State) -> No
     for done in (11, 12):
         store.update_progress(run.id, done, eta_s=4.0)
         returned += [store.get(run.id), *store.list().items, store.update(run.id, error="late")]
-    assert [one.eta_s for one in returned if isinstance(one, Run)] == [None] * len(returned)
+    assert [stored_run.eta_s for stored_run in returned if isinstance(stored_run, Run)] == [
+        None
+    ] * len(returned)
 
 
 def test_ended_run_never_has_an_estimate(store: RunStore) -> None:
@@ -476,7 +478,7 @@ def test_ids_increase_within_a_millisecond() -> None:
     ids = [new_id() for _ in range(1000)]
     assert ids == sorted(ids)
     assert len(set(ids)) == 1000
-    assert all(len(made) == 13 and made.isalnum() for made in ids)
+    assert all(len(identifier) == 13 and identifier.isalnum() for identifier in ids)
 
 
 def test_artifact_and_fields_are_stored_atomically(store: RunStore) -> None:
@@ -484,17 +486,17 @@ def test_artifact_and_fields_are_stored_atomically(store: RunStore) -> None:
     store.update_progress(run.id, 7, 2.0)
     store.put_artifact(run.id, "checkpoint.npz", b"5", done=5)
     store.put_artifact(run.id, "other", b"x")
-    kept = store.change(run.id, QUEUED, "interrupted")
-    assert (kept.done, store.artifact(run.id, "checkpoint.npz")) == (5, b"5")
+    interrupted = store.change(run.id, QUEUED, "interrupted")
+    assert (interrupted.done, store.artifact(run.id, "checkpoint.npz")) == (5, b"5")
     with pytest.raises(NotFound):
         store.put_artifact("none", "checkpoint.npz", b"5", done=5)
 
 
 def test_evaluations_after_a_step_are_deleted(store: RunStore) -> None:
     run, other = queued_run(store), queued_run(store)
-    for one in (run, other):
+    for owner in (run, other):
         rows = [{"step": step, "distance_m": 0.1, "epsilon": 0.0} for step in (50, 100, 150)]
-        store.curves.append(one.id, rows)
+        store.curves.append(owner.id, rows)
     store.curves.delete_after(run.id, after_step=100)
     assert [row["step"] for row in store.curves.get(run.id)] == [50, 100]
     assert [row["step"] for row in store.curves.get(other.id)] == [50, 100, 150]

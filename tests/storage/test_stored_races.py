@@ -58,8 +58,8 @@ def assert_recorded(lanes: list[LaneRecording] | None, raced: list[LaneRecording
     for lane, was in zip(lanes, raced, strict=True):
         assert np.array_equal(lane.rest_qpos, was.rest_qpos)
         assert len(lane.steps) == len(was.steps)
-        for one, other in zip(lane.steps, was.steps, strict=True):
-            assert_same(one, other)
+        for step, raced_step in zip(lane.steps, was.steps, strict=True):
+            assert_same(step, raced_step)
         assert np.allclose(lane.start_qpos(len(was.steps)), was.start_qpos(len(was.steps)))
 
 
@@ -155,9 +155,9 @@ def test_a_race_that_begins_anew_keeps_its_last_picture_until_it_stores_another(
     recordings = Recordings(store)
     assert recordings.race("a") is not None
     record(recordings, raced, steps=3)
-    kept = Recordings(store).race("a")
-    assert kept is not None
-    assert [len(lane.steps) for lane in kept] == [20, 20, 20]
+    stored = Recordings(store).race("a")
+    assert stored is not None
+    assert [len(lane.steps) for lane in stored] == [20, 20, 20]
 
     recordings.save("a")
     lanes = Recordings(store).race("a")

@@ -22,15 +22,15 @@ SECRET = "0123456789abcdef" * 4
 GAIT = "left-right-origin"
 
 
-def rules_of(**given: Any) -> TournamentRules:
+def rules_of(**options: Any) -> TournamentRules:
     fields: dict[str, Any] = {"gait": GAIT, "simulator": "kinematic", "draws": 5, "steps": 60}
-    return TournamentRules(**(fields | given))
+    return TournamentRules(**(fields | options))
 
 
 @cache
-def table_file(steps: int = 40, **given: Any) -> bytes:
+def table_file(steps: int = 40, **options: Any) -> bytes:
     """Return the file of a table that Q-learning has learned in the kinematic simulator."""
-    fields: dict[str, Any] = {"gait": GAIT, "simulator": "kinematic", **given}
+    fields: dict[str, Any] = {"gait": GAIT, "simulator": "kinematic", **options}
     config = training_config("q-learning", steps=steps, evaluate_every=0, **fields)
     learner = build_learner(config)
     for _ in train(learner, config):
@@ -38,8 +38,8 @@ def table_file(steps: int = 40, **given: Any) -> bytes:
     return to_bytes(snapshot(learner, config))
 
 
-def table_of(steps: int = 40, **given: Any) -> Checkpoint:
-    return from_bytes(table_file(steps, **given), "q.npz")
+def table_of(steps: int = 40, **options: Any) -> Checkpoint:
+    return from_bytes(table_file(steps, **options), "q.npz")
 
 
 def judged(
@@ -47,7 +47,7 @@ def judged(
 ) -> TournamentFile:
     """Judge the references and some entries, and end the tournament."""
     by_digest = {sha256_of(table): from_bytes(table, "q.npz") for table in tables}
-    every = [*references(rules), *(completed(one, rules) for one in entries)]
+    every = [*references(rules), *(completed(entry, rules) for entry in entries)]
     return tournament_file(
         "A tournament",
         rules,

@@ -14,10 +14,10 @@ from tests.tournaments.sample_tournaments import rules_of, table_of
 DIGEST = "ab" * 32
 
 
-def entry_of(agent: str = "q-learning", **given: Any) -> EntryConfig:
-    if "settings" in given:
-        given["settings"] = SettingValues(given["settings"])
-    return EntryConfig(agent=agent, **given)
+def entry_of(agent: str = "q-learning", **fields: Any) -> EntryConfig:
+    if "settings" in fields:
+        fields["settings"] = SettingValues(fields["settings"])
+    return EntryConfig(agent=agent, **fields)
 
 
 def test_an_entry_practises_the_whole_budget_unless_it_says_less() -> None:

@@ -72,9 +72,12 @@ def elsewhere() -> dict[str, Judgement]:
         "given = pickle.load(sys.stdin.buffer); "
         "sys.stdout.buffer.write(pickle.dumps([judge(*one) for one in given]))"
     )
-    given = [(IN_MUJOCO, EntryConfig(agent=agent), TWO_DRAWS[1]) for agent in AGENTS]
+    arguments = [(IN_MUJOCO, EntryConfig(agent=agent), TWO_DRAWS[1]) for agent in AGENTS]
     done = subprocess.run(
-        [sys.executable, "-c", script], input=pickle.dumps(given), capture_output=True, check=True
+        [sys.executable, "-c", script],
+        input=pickle.dumps(arguments),
+        capture_output=True,
+        check=True,
     )
     return dict(zip(AGENTS, pickle.loads(done.stdout), strict=True))
 
@@ -90,7 +93,7 @@ def test_a_judgement_depends_on_neither_order_nor_thread_nor_process(
     with ThreadPoolExecutor(2) as threads:
         assert list(threads.map(lambda draw: judge(rules, entry, draw), draws)) == expected
     assert elsewhere[agent] == expected[1]
-    assert all(one.failure is None for one in expected)
+    assert all(judgement.failure is None for judgement in expected)
 
 
 def test_a_learner_practises_and_walks_from_rest_as_in_a_trial() -> None:
@@ -205,8 +208,8 @@ def test_a_search_that_simulates_too_many_transitions_has_failed() -> None:
 
 
 def test_the_fewest_transitions_of_rules_are_enough_for_greedy() -> None:
-    for given, fewest in (({}, 600), ({"divisions": 3}, 1_200)):
-        rules = rules_of(transitions=fewest, **given)
+    for options, fewest in (({}, 600), ({"divisions": 3}, 1_200)):
+        rules = rules_of(transitions=fewest, **options)
         assert judge(rules, EntryConfig(agent="greedy"), DRAW).failure is None
 
 

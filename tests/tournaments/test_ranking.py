@@ -26,16 +26,18 @@ def sample(entries: int, draws: int, seed: int = 0) -> dict[int, list[float]]:
 
 def test_intervals_are_those_of_experiments() -> None:
     distances = sample(6, 20)
-    for one in ranking(distances, {}):
-        expected = iqm_interval((tuple(distances[one.number]),), 0)
-        assert (one.iqm_m, one.low_m, one.high_m) == pytest.approx(expected, rel=1e-12)
+    for standing in ranking(distances, {}):
+        expected = iqm_interval((tuple(distances[standing.number]),), 0)
+        assert (standing.iqm_m, standing.low_m, standing.high_m) == pytest.approx(
+            expected, rel=1e-12
+        )
         for other, points in distances.items():
-            pair = np.array([distances[one.number], points])
+            pair = np.array([distances[standing.number], points])
             low, high = paired_interval([pair], lambda iqms: iqms[0] - iqms[1], 0)[1:]
             assert low is not None
             assert high is not None
             is_apart = not low <= 0 <= high
-            assert (other in one.not_separable) == (other != one.number and not is_apart)
+            assert (other in standing.not_separable) == (other != standing.number and not is_apart)
 
 
 def test_pairs_tell_apart_what_overlapping_intervals_do_not() -> None:
@@ -50,7 +52,7 @@ def test_pairs_tell_apart_what_overlapping_intervals_do_not() -> None:
 
 def test_equal_results_are_not_told_apart() -> None:
     same = [0.1, 0.2, 0.3, 0.4, 0.5]
-    rounded = [one + 1e-16 for one in same]
+    rounded = [distance_m + 1e-16 for distance_m in same]
     standings = ranking({7: same, 2: same, 5: rounded}, {2: 3})
     assert {standing.number: standing.not_separable for standing in standings} == {
         2: (5, 7),
@@ -59,7 +61,7 @@ def test_equal_results_are_not_told_apart() -> None:
     }
     assert all((standing.best_rank, standing.worst_rank) == (1, 3) for standing in standings)
     assert [standing.failures for standing in standings if standing.number == 2] == [3]
-    assert [one.number for one in ranking({7: same, 2: same}, {})] == [2, 7]
+    assert [standing.number for standing in ranking({7: same, 2: same}, {})] == [2, 7]
 
 
 def test_there_may_be_none_or_one() -> None:
@@ -97,26 +99,26 @@ def test_ranks_are_consistent_and_independent_of_the_order(
     assert set(by_number) == set(distances)
     iqms = [standing.iqm_m for standing in standings]
     assert iqms == sorted(iqms, reverse=True)
-    for place, one in enumerate(standings, start=1):
-        assert 1 <= one.best_rank <= place <= one.worst_rank <= len(standings)
-        assert one.number not in one.not_separable
-        told_apart = len(standings) - 1 - len(one.not_separable)
-        assert one.best_rank - 1 + len(standings) - one.worst_rank == told_apart
-        for other in one.not_separable:
-            assert one.number in by_number[other].not_separable
+    for place, standing in enumerate(standings, start=1):
+        assert 1 <= standing.best_rank <= place <= standing.worst_rank <= len(standings)
+        assert standing.number not in standing.not_separable
+        told_apart = len(standings) - 1 - len(standing.not_separable)
+        assert standing.best_rank - 1 + len(standings) - standing.worst_rank == told_apart
+        for other in standing.not_separable:
+            assert standing.number in by_number[other].not_separable
 
 
 @pytest.mark.test
 def test_many_entries_are_ranked_by_the_same_resamples() -> None:
     """Two hundred entries have 19,900 pairs; each pair alone would take minutes."""
     distances = sample(200, 20)
-    whole = {one.number: one for one in ranking(distances, {})}
+    whole = {standing.number: standing for standing in ranking(distances, {})}
     some = {number: distances[number] for number in (3, 77, 150)}
-    for one in ranking(some, {}):
-        in_whole = whole[one.number]
-        assert (one.iqm_m, one.low_m, one.high_m) == (
+    for standing in ranking(some, {}):
+        in_whole = whole[standing.number]
+        assert (standing.iqm_m, standing.low_m, standing.high_m) == (
             in_whole.iqm_m,
             in_whole.low_m,
             in_whole.high_m,
         )
-        assert set(one.not_separable) == set(in_whole.not_separable) & set(some)
+        assert set(standing.not_separable) == set(in_whole.not_separable) & set(some)

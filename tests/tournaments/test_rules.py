@@ -74,7 +74,7 @@ def test_the_gaits_of_creatures_are_written_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("options", "message"),
     [
         ({"draws": 4}, "draws must be a whole number from 5 to 100, not 4"),
         ({"draws": 101}, "draws must be a whole number from 5 to 100, not 101"),
@@ -100,9 +100,9 @@ def test_the_gaits_of_creatures_are_written_out() -> None:
         ({"robots": (SMALL,)}, "^dog .*: leg 1 cannot reach"),
     ],
 )
-def test_rules_that_are_not_valid_are_refused(given: dict[str, Any], message: str) -> None:
+def test_rules_that_are_not_valid_are_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(HexapodError, match=message):
-        rules_of(**given)
+        rules_of(**options)
 
 
 def test_every_creature_must_be_able_to_walk_in_every_world() -> None:

@@ -47,8 +47,8 @@ def test_it_has_the_documents_of_stored_robots() -> None:
     stored = read_document(data, "Pinch")
     assert stored.id is not None
     rules = rules_of(robot=stored, gait="tetrapod")
-    made = tournament_file("Crabs", rules, SECRET, [])
-    written = write_file(made)
+    tournament = tournament_file("Crabs", rules, SECRET, [])
+    written = write_file(tournament)
     LIBRARY.forget([stored.id])
     with pytest.raises(InvalidInput, match="no stored robot"):
         LIBRARY.find(stored.id)
@@ -159,9 +159,9 @@ def test_the_number_of_entries_is_limited(tournament: TournamentFile) -> None:
         replace(tournament, entries=many)
 
 
-@pytest.mark.parametrize("part", [b"[],", b"{},"])
-def test_a_file_of_very_many_lists_is_refused_before_it_is_read(part: bytes) -> None:
-    data = b'{"format":1,"machine":{"x":[' + part * 200_000 + b"0]}}"
+@pytest.mark.parametrize("member", [b"[],", b"{},"])
+def test_a_file_of_very_many_lists_is_refused_before_it_is_read(member: bytes) -> None:
+    data = b'{"format":1,"machine":{"x":[' + member * 200_000 + b"0]}}"
 
     with pytest.raises(DamagedFile, match="more than 100,000 lists and objects"):
         read_file(data, "it")

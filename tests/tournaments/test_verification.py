@@ -73,21 +73,21 @@ def test_a_tournament_in_mujoco_repeats_with_any_number_of_processes() -> None:
 @pytest.fixture
 def imported() -> Iterator[str]:
     """Store a robot from a file, and return its id."""
-    made = read_document(
+    stored = read_document(
         document_of(model_robot(model_of(PRESETS["stiff"]), "Own", **QUICK_STEPS)), "Own"
     )
-    assert made.id is not None
-    LIBRARY.describe(made.id, About("Own", "tripod"))
-    yield made.id
-    LIBRARY.forget([made.id])
+    assert stored.id is not None
+    LIBRARY.describe(stored.id, About("Own", "tripod"))
+    yield stored.id
+    LIBRARY.forget([stored.id])
 
 
 @pytest.mark.test
 def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(imported: str) -> None:
-    own = read_document(LIBRARY.find(imported), "Own")
-    rules = rules_of(simulator="mujoco", gait="tripod", robot=HASTY, steps=10, robots=(own,))
+    stored = read_document(LIBRARY.find(imported), "Own")
+    rules = rules_of(simulator="mujoco", gait="tripod", robot=HASTY, steps=10, robots=(stored,))
     assert rules.gaits == ("tripod",)
-    data = write_file(judged(rules, [EntryConfig(agent="q-learning", robot=own)]))
+    data = write_file(judged(rules, [EntryConfig(agent="q-learning", robot=stored)]))
     LIBRARY.forget([imported])
     assert verify(read_file(data, "it"), workers=1) == []
     with pytest.raises(InvalidInput, match="no stored robot"):
@@ -106,8 +106,11 @@ def test_a_file_of_before_the_limit_of_transitions_was_a_rule_has_that_of_then()
     assert read.rules.transitions == 40_000
     assert verify(read, workers=1) == []
     content["rules"]["transitions"] = 7_799
-    told = verify(read_file(json.dumps(content).encode(), "it"), workers=1)
-    assert any("m in the file, " in one and "over 7,799 transitions" in one for one in told)
+    differences = verify(read_file(json.dumps(content).encode(), "it"), workers=1)
+    assert any(
+        "m in the file, " in sentence and "over 7,799 transitions" in sentence
+        for sentence in differences
+    )
     content["rules"]["transitions"] = 100_001
     with pytest.raises(DamagedFile, match="transitions must be"):
         read_file(json.dumps(content).encode(), "it")
@@ -128,40 +131,47 @@ def test_a_file_of_before_the_limit_of_transitions_was_a_rule_repeats_with_that_
     del content["rules"]["transitions"]
     assert verify(read_file(json.dumps(content).encode(), "it"), workers=1) == []
     content["rules"]["transitions"] = 100_000
-    told = verify(read_file(json.dumps(content).encode(), "it"), workers=1)
-    assert any("over 40,000 transitions" in one and "m repeated" in one for one in told)
+    differences = verify(read_file(json.dumps(content).encode(), "it"), workers=1)
+    assert any(
+        "over 40,000 transitions" in sentence and "m repeated" in sentence
+        for sentence in differences
+    )
 
 
 def test_one_digit_of_a_distance_is_told(kinematic: TournamentFile) -> None:
-    one = kinematic.entries[3]
-    distance = one.judgements[2].distance_m
+    entry = kinematic.entries[3]
+    distance = entry.judgements[2].distance_m
     other = float(f"{distance:.16g}"[:-1] + ("1" if f"{distance:.16g}"[-1] != "1" else "2"))
     judgements = [
-        replace(j, distance_m=other) if n == 2 else j for n, j in enumerate(one.judgements)
+        replace(j, distance_m=other) if n == 2 else j for n, j in enumerate(entry.judgements)
     ]
-    [told] = sentences(edited(kinematic, 3, judgements=tuple(judgements)))
-    assert told.startswith("Entry 3 (entrant 3), draw 3 (seed ")
-    assert told.endswith(f", flat): {other!r} m in the file, {distance!r} m repeated.")
+    [difference] = sentences(edited(kinematic, 3, judgements=tuple(judgements)))
+    assert difference.startswith("Entry 3 (entrant 3), draw 3 (seed ")
+    assert difference.endswith(f", flat): {other!r} m in the file, {distance!r} m repeated.")
 
 
 def test_a_result_that_was_improved_with_its_standing_is_told(kinematic: TournamentFile) -> None:
-    one = kinematic.entries[3]
-    best = tuple(replace(judgement, distance_m=0.9) for judgement in one.judgements)
+    entry = kinematic.entries[3]
+    best = tuple(replace(judgement, distance_m=0.9) for judgement in entry.judgements)
     changed = edited(kinematic, 3, judgements=best)
     standings = standings_of({each.number: each.judgements for each in changed.entries})
-    told = sentences(replace(changed, standings=tuple(standings)))
-    assert [one for one in told if one.startswith("Entry 3 (entrant 3), draw ")] == told[:3]
-    assert told[3] == "Entry 3 (entrant 3): 2 more of its 5 draws differ."
+    differences = sentences(replace(changed, standings=tuple(standings)))
+    assert [
+        sentence for sentence in differences if sentence.startswith("Entry 3 (entrant 3), draw ")
+    ] == differences[:3]
+    assert differences[3] == "Entry 3 (entrant 3): 2 more of its 5 draws differ."
     assert any(
-        one.startswith("Standing of Entry 3 (entrant 3): iqm_m is 0.9 in the file, ")
-        for one in told[4:]
+        sentence.startswith("Standing of Entry 3 (entrant 3): iqm_m is 0.9 in the file, ")
+        for sentence in differences[4:]
     )
 
 
 def test_another_secret_is_told(kinematic: TournamentFile) -> None:
-    told = sentences(replace(kinematic, secret=OTHER_SECRET))
-    assert told[0].startswith("The secret is not the one to which the tournament was committed")
-    assert any(one.startswith("Entry 3 (entrant 3), draw 1 ") for one in told)
+    differences = sentences(replace(kinematic, secret=OTHER_SECRET))
+    assert differences[0].startswith(
+        "The secret is not the one to which the tournament was committed"
+    )
+    assert any(sentence.startswith("Entry 3 (entrant 3), draw 1 ") for sentence in differences)
 
 
 def test_a_draw_that_was_removed_is_told(kinematic: TournamentFile) -> None:
@@ -172,21 +182,25 @@ def test_a_draw_that_was_removed_is_told(kinematic: TournamentFile) -> None:
 
 
 def test_standings_in_another_order_are_told(kinematic: TournamentFile) -> None:
-    first, second, *others = kinematic.standings
-    [told] = sentences(replace(kinematic, standings=(second, first, *others)))
-    assert told.startswith(f"The standings are in the order {second.number}, {first.number}, ")
+    first, second, *rest = kinematic.standings
+    [difference] = sentences(replace(kinematic, standings=(second, first, *rest)))
+    assert difference.startswith(
+        f"The standings are in the order {second.number}, {first.number}, "
+    )
 
 
 def test_standings_of_others_are_told(kinematic: TournamentFile) -> None:
-    first, second, *others = kinematic.standings
+    first, second, *rest = kinematic.standings
     swapped = (
         replace(second, number=first.number),
         replace(first, number=second.number),
-        *others,
+        *rest,
     )
-    told = sentences(replace(kinematic, standings=swapped))
-    assert any(one.startswith(f"Standing of Entry {second.number} ") for one in told)
-    missing, strange = replace(kinematic, standings=(first, *others)), replace(first, number=99)
+    differences = sentences(replace(kinematic, standings=swapped))
+    assert any(
+        sentence.startswith(f"Standing of Entry {second.number} ") for sentence in differences
+    )
+    missing, strange = replace(kinematic, standings=(first, *rest)), replace(first, number=99)
     assert sentences(missing) == [
         f"Entry {second.number} (entrant {second.number}) has no standing."
     ]
@@ -197,15 +211,15 @@ def test_standings_of_others_are_told(kinematic: TournamentFile) -> None:
 
 def test_a_missing_and_a_weakened_reference_are_told(kinematic: TournamentFile) -> None:
     weak = replace(kinematic.entries[2].entry, steps=1)
-    told = sentences(edited(kinematic, 2, entry=weak))
-    assert told[0] == "Entry 2 is not the reference linear-model with its usual settings."
-    told = sentences(replace(kinematic, entries=kinematic.entries[1:]))
-    assert told[0] == "Entry 0, the reference greedy, is missing."
+    differences = sentences(edited(kinematic, 2, entry=weak))
+    assert differences[0] == "Entry 2 is not the reference linear-model with its usual settings."
+    differences = sentences(replace(kinematic, entries=kinematic.entries[1:]))
+    assert differences[0] == "Entry 0, the reference greedy, is missing."
 
 
 def test_an_entry_that_the_rules_do_not_allow_is_told(kinematic: TournamentFile) -> None:
-    told = sentences(edited(kinematic, 3, entry=EntryConfig(agent="q-learning", steps=61)))
-    assert told == [
+    differences = sentences(edited(kinematic, 3, entry=EntryConfig(agent="q-learning", steps=61)))
+    assert differences == [
         "Entry 3 (entrant 3) cannot be judged: steps must be from 1 to 60, the budget of this "
         "tournament, not 61.",
         "The standings were not compared, as some entries could not be judged.",
@@ -214,16 +228,19 @@ def test_an_entry_that_the_rules_do_not_allow_is_told(kinematic: TournamentFile)
 
 def test_a_table_that_is_not_there_and_another_one_are_told(kinematic: TournamentFile) -> None:
     digest = sha256_of(table_file())
-    [told, _] = sentences(replace(kinematic, tables={}))
-    assert told == f"Entry 4 (entrant 4) cannot be judged: its table {digest} is not in the file."
+    [difference, _] = sentences(replace(kinematic, tables={}))
+    assert (
+        difference
+        == f"Entry 4 (entrant 4) cannot be judged: its table {digest} is not in the file."
+    )
     other = judged(
         kinematic.rules,
         [EntryConfig(agent="q-learning", table=sha256_of(table_file(41)))],
         [table_file(41)],
     )
     exchanged = edited(replace(kinematic, tables=other.tables), 4, entry=other.entries[3].entry)
-    told = sentences(exchanged)[0]
-    assert told.startswith("Entry 4 (entrant 4), draw ")
+    difference = sentences(exchanged)[0]
+    assert difference.startswith("Entry 4 (entrant 4), draw ")
 
 
 def test_other_versions_are_a_note(kinematic: TournamentFile) -> None:
@@ -243,8 +260,8 @@ def test_the_number_of_workers_is_checked(kinematic: TournamentFile) -> None:
 
 def test_a_file_without_entries_lacks_its_references(kinematic: TournamentFile) -> None:
     empty: tuple[JudgedEntry, ...] = ()
-    told = sentences(replace(kinematic, entries=empty, standings=()))
-    assert told == [
+    differences = sentences(replace(kinematic, entries=empty, standings=()))
+    assert differences == [
         f"Entry {number}, the reference {agent}, is missing."
         for number, agent in enumerate(("greedy", "random-walk", "linear-model"))
     ]

@@ -68,14 +68,14 @@ def test_late_joiner_gets_the_whole_scene_in_one_frame(served: ServedHub, robots
 
 
 def test_all_viewers_get_the_same_bytes(served: ServedHub, robots: Robots) -> None:
-    with served.watch() as one, served.watch() as other:
-        one.frame()
-        other.frame()
+    with served.watch() as first, served.watch() as second:
+        first.frame()
+        second.frame()
         for place in range(1, 20):
             robots.move_to(place)
-            frames = one.frames_until(robots_at(place))
+            frames = first.frames_until(robots_at(place))
             assert [frame.raw for frame in frames] == [
-                frame.raw for frame in other.frames_until(robots_at(place))
+                frame.raw for frame in second.frames_until(robots_at(place))
             ]
 
 
@@ -83,9 +83,9 @@ def test_viewers_are_counted(viser_server: InProcessViser) -> None:
     counts: list[int] = []
     hub = Hub(viser_server.frames, on_viewers_changed=counts.append)
     with serving(hub) as served:
-        with served.watch() as one, served.watch() as other:
-            one.frame()
-            other.frame()
+        with served.watch() as first, served.watch() as second:
+            first.frame()
+            second.frame()
         wait_until(lambda: hub.counters.viewers == 0)
 
     assert counts == [1, 2, 1, 0]
@@ -358,15 +358,15 @@ def test_error_while_relaying_makes_viewers_reconnect(
 def test_a_page_that_plays_a_run_by_itself_gets_no_frames(
     served: ServedHub, robots: Robots
 ) -> None:
-    with served.watch() as everybody, served.watch("elsewhere") as own:
+    with served.watch() as everybody, served.watch("elsewhere") as replaying:
         everybody.frames_until(is_complete)
-        assert [message["type"] for message in own.frame().messages] == ["ReplayDoneMessage"]
+        assert [message["type"] for message in replaying.frame().messages] == ["ReplayDoneMessage"]
         robots.move_to(7)
         everybody.frames_until(robots_at(7))
-        follow(own, "free")
-        (back,) = own.frames_until(is_complete)
+        follow(replaying, "free")
+        (back,) = replaying.frames_until(is_complete)
         assert robots_at(7)(back), "the whole scene at once, and nothing before it"
 
-        follow(own, "elsewhere")
-        follow(own, "free")
-        assert own.frames_until(is_complete)
+        follow(replaying, "elsewhere")
+        follow(replaying, "free")
+        assert replaying.frames_until(is_complete)

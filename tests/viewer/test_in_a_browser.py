@@ -169,19 +169,19 @@ def socket_addresses(page: Page) -> list[str]:
     announcement = re.compile(r"Connecting to: (\S+) with protocol")
 
     def note(message: ConsoleMessage) -> None:
-        if found := announcement.match(message.text):
-            addresses.append(found[1])
+        if match := announcement.match(message.text):
+            addresses.append(match[1])
 
     page.on("console", note)
     return addresses
 
 
-def intersect(one: FloatRect, other: FloatRect) -> bool:
+def intersect(a: FloatRect, b: FloatRect) -> bool:
     return (
-        one["x"] < other["x"] + other["width"]
-        and other["x"] < one["x"] + one["width"]
-        and one["y"] < other["y"] + other["height"]
-        and other["y"] < one["y"] + one["height"]
+        a["x"] < b["x"] + b["width"]
+        and b["x"] < a["x"] + a["width"]
+        and a["y"] < b["y"] + b["height"]
+        and b["y"] < a["y"] + a["height"]
     )
 
 
@@ -281,7 +281,7 @@ def test_labels_follow_the_theme_and_do_not_overlap(
     wait_until(lambda: labels.count() >= 6)
 
     def boxes() -> list[FloatRect]:
-        return [box for one in labels.all() if (box := one.bounding_box())]
+        return [box for label in labels.all() if (box := label.bounding_box())]
 
     # In the frame, which is 8 px inside of its page.
     wait_until(lambda: all(box["y"] >= 68 for box in boxes()))
@@ -314,16 +314,16 @@ def test_page_of_another_version_reloads_once(
     assert len(loads) == 2
 
 
-@pytest.mark.parametrize(("places", "share", "told"), [(0, 5, "full"), (5, 0, "address full")])
+@pytest.mark.parametrize(("places", "share", "status"), [(0, 5, "full"), (5, 0, "address full")])
 def test_refusal_is_reported_to_the_dashboard(
-    page: Page, viser_server: InProcessViser, places: int, share: int, told: str
+    page: Page, viser_server: InProcessViser, places: int, share: int, status: str
 ) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
     hub = Hub(viser_server.frames, slots=ClientSlots(places, share))
     with serving(hub, more_routes=[root]) as served:
         page.goto(f"http://{served.host}/")
 
-        page.wait_for_function(f"heard.some((message) => message.status === '{told}')")
+        page.wait_for_function(f"heard.some((message) => message.status === '{status}')")
 
 
 def test_foreign_pages_cannot_embed_the_viewer(served: ServedHub, browser: Browser) -> None:
@@ -365,8 +365,8 @@ def test_all_requests_go_to_the_own_origin(page: Page, served: ServedHub) -> Non
     page.goto(f"{served.page}?websocket=ws://evil.example&playbackPath=https://evil.example/x")
     wait_for_node(page, "/world/box")
 
-    own = (f"http://{served.host}/", f"blob:http://{served.host}/", "data:")
-    assert [url for url in requested if not url.startswith(own)] == []
+    own_addresses = (f"http://{served.host}/", f"blob:http://{served.host}/", "data:")
+    assert [url for url in requested if not url.startswith(own_addresses)] == []
     assert sockets == [f"ws://{served.host}/viewer/?view=leader"]
     assert errors == []
     page.reload()
@@ -425,5 +425,7 @@ def test_an_attempt_to_connect_is_not_given_up_for_the_next_one(
     with new_page(flat_browser) as page:
         page.goto(served.page)
         # The page itself may say meanwhile which stage it follows.
-        attempts = [one for one in page.evaluate(script) if one != "send"]
+        attempts = [
+            message_type for message_type in page.evaluate(script) if message_type != "send"
+        ]
         assert attempts == ["set_server", "retry"]

@@ -58,8 +58,10 @@ def test_a_segment_shows_the_joint_positions_that_were_simulated(parts: StagePar
         time_s = segment["frames"][number]["time_s"]
         assert time_s == pytest.approx((SEGMENT_FRAMES + number) / FRAMES_PER_S)
         state = shown(segment["frames"][: number + 1], arrays)
-        for part, links in enumerate(part.links for part in mesh.parts):
-            name = f"{SCENE_ROOT}/robots/{mesh.part_name(part)} batched_positions"
+        for number_of_part, links in enumerate(
+            number_of_part.links for number_of_part in mesh.parts
+        ):
+            name = f"{SCENE_ROOT}/robots/{mesh.part_name(number_of_part)} batched_positions"
             drawn = np.frombuffer(state[name], np.float32).reshape(len(LANES), len(links), 3)
             for lane, view in enumerate(replay.frame_at(time_s).lanes):
                 expected = mesh.body_poses(view.qpos).positions[links]

@@ -371,7 +371,7 @@ def test_client_is_packed() -> None:
 
 
 def test_worker_messages(client: str) -> None:
-    for part in (
+    for snippet in (
         "type===`send`",
         "type===`set_server`?(e=r.server",
         "{type:`set_server`,server:",
@@ -381,15 +381,15 @@ def test_worker_messages(client: str) -> None:
         "code===1002",
         "type===`retry`",
     ):
-        assert part in client
+        assert snippet in client
     assert re.search(r"setTimeout\(\(\)=>\{\w+\.close\(\)\},5e3\)", client)
 
 
 def test_query_parameters(client: str) -> None:
     from app.viewer.viewer_page import ALLOWED_QUERY
 
-    own = {"view", "theme"}
-    for name in ALLOWED_QUERY - own | {"playbackPath"}:
+    declared = {"view", "theme"}
+    for name in ALLOWED_QUERY - declared | {"playbackPath"}:
         assert re.search(rf"\w\(`{name}`\)", client)
     assert "=`websocket`" in client
     # Elsewhere a new parameter might be read.
@@ -428,7 +428,7 @@ def test_controls_have_these_selectors(client: str) -> None:
 
 
 def test_labels_are_taken_out(client: str) -> None:
-    for part in (
+    for snippet in (
         "type:`message_batch`,messages:",
         ".__viserMutable=",
         "nodeRefFromName",
@@ -437,7 +437,7 @@ def test_labels_are_taken_out(client: str) -> None:
         "canvas:null",
         "messageQueue:[]",
     ):
-        assert part in client
+        assert snippet in client
     # The one function by which messages of the websocket and of a recording reach the queue.
     assert re.search(r"let n=e\.messageQueue.{,200}n\.push\(r\)", client)
     assert re.search(r"isScene===!0&&\w+\.onAfterRender\(", client)

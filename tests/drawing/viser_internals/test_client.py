@@ -170,10 +170,10 @@ def hashes(policy: str) -> list[str]:
 def test_policy_has_a_hash_for_each_script_and_the_packed_one(tail: str) -> None:
     policies = [content_policy(page_of(code)) for code in ("app()" + tail, "app() " + tail)]
 
-    one, other = map(hashes, policies)
+    hashes_a, hashes_b = map(hashes, policies)
 
-    assert one[:2] == other[:2]
-    assert len({*one, *other}) == 4
+    assert hashes_a[:2] == hashes_b[:2]
+    assert len({*hashes_a, *hashes_b}) == 4
 
 
 def test_packed_style_is_not_part_of_the_hash() -> None:

@@ -56,14 +56,14 @@ def test_without_blocked_keeps_all_other_messages(replay: list[stream.Frame]) ->
 
 
 def test_remap_buffers_copies_messages_with_their_arrays() -> None:
-    one, two, three = (memoryview(bytes([n] * n)) for n in (1, 2, 3))
+    first, second, third = (memoryview(bytes([n] * n)) for n in (1, 2, 3))
     message = {"props": {"a": {"__binary_index": 2, "dtype": "<u1"}, "b": [1, None]}}
-    target = [one]
+    target = [first]
 
-    moved = stream.remap_buffers(message, [one, two, three], target)
+    moved = stream.remap_buffers(message, [first, second, third], target)
 
     assert moved == {"props": {"a": {"__binary_index": 1, "dtype": "<u1"}, "b": [1, None]}}
-    assert target == [one, three]
+    assert target == [first, third]
     assert message["props"]["a"] == {"__binary_index": 2, "dtype": "<u1"}
 
 

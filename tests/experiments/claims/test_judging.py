@@ -21,8 +21,8 @@ ODD_GAIT = "left-right-vertical"
 Far = Callable[[TrialSetting], Callable[[int], float]]
 
 
-def table1(far: Far, seeds: int = 12, name: str = "", **given: object) -> dict[str, object]:
-    only = {"observations": ("measured",), "robots": ROBOTS[:1], **given}
+def table1(far: Far, seeds: int = 12, name: str = "", **options: object) -> dict[str, object]:
+    only = {"observations": ("measured",), "robots": ROBOTS[:1], **options}
     return claim(summary_of("table1", far, seeds=seeds, **only), name)
 
 
@@ -42,7 +42,7 @@ def everywhere(middle_m: float, spread_m: float = 0.02) -> Far:
         (everywhere(0.6), "does not hold"),
         (everywhere(0.5), "not established"),
         # One gait in which greedy loses is enough against "dominates".
-        (lambda one: around(0.6 if one.gait == ODD_GAIT else 0.4), "does not hold"),
+        (lambda setting: around(0.6 if setting.gait == ODD_GAIT else 0.4), "does not hold"),
     ],
 )
 def test_greedy_dominates_only_if_it_is_ahead_in_every_gait(far: Far, verdict: str) -> None:
@@ -56,12 +56,12 @@ def test_greedy_dominates_only_if_it_is_ahead_in_every_gait(far: Far, verdict: s
 def test_as_fast_in_real_time_means_at_least_95_percent_of_greedy(
     middle_m: float, verdict: str
 ) -> None:
-    found = table1(everywhere(middle_m), name="real-time-500")
-    assert found["verdict"] == verdict
+    verdict_of_claim = table1(everywhere(middle_m), name="real-time-500")
+    assert verdict_of_claim["verdict"] == verdict
 
 
-def alpha_of(one: TrialSetting) -> float:
-    alpha = one.training.settings["alpha"]
+def alpha_of(setting: TrialSetting) -> float:
+    alpha = setting.training.settings["alpha"]
     assert isinstance(alpha, float)
     return alpha
 
@@ -69,13 +69,13 @@ def alpha_of(one: TrialSetting) -> float:
 def test_the_papers_text_and_table_are_judged_separately() -> None:
     """Q-learning wins in the table's gait, and not in the text's."""
 
-    def far(one: TrialSetting) -> Callable[[int], float]:
-        return around(0.42 if one.gait == "front-back-origin" else 0.3)
+    def far(setting: TrialSetting) -> Callable[[int], float]:
+        return around(0.42 if setting.gait == "front-back-origin" else 0.3)
 
     assert table1(far, name="table-beats-greedy")["verdict"] == "holds"
-    found = table1(far, name="text-beats-greedy")
-    assert found["verdict"] == "does not hold"
-    assert "0.325 against 0.375" in str(found["evidence"])
+    text_claim = table1(far, name="text-beats-greedy")
+    assert text_claim["verdict"] == "does not hold"
+    assert "0.325 against 0.375" in str(text_claim["evidence"])
 
 
 @pytest.mark.parametrize(("middle_m", "verdict"), [(0.49, "holds"), (0.4, "does not hold")])
@@ -84,9 +84,9 @@ def test_on_par_in_500_steps_means_reaching_greedys_distance(middle_m: float, ve
 
 
 def test_two_step_is_slow_if_it_decides_longer_than_it_walks() -> None:
-    found = table1(everywhere(0.3), name="two-step-slow")
-    assert found["verdict"] == "does not hold"
-    assert "8 s in 50 steps, between 50\xa0% and 50\xa0%" in str(found["evidence"])
+    two_step_claim = table1(everywhere(0.3), name="two-step-slow")
+    assert two_step_claim["verdict"] == "does not hold"
+    assert "8 s in 50 steps, between 50\xa0% and 50\xa0%" in str(two_step_claim["evidence"])
 
 
 @pytest.mark.parametrize(
@@ -94,18 +94,20 @@ def test_two_step_is_slow_if_it_decides_longer_than_it_walks() -> None:
     [(0.2, "holds"), (0.4, "does not hold"), (0.36, "not established")],
 )
 def test_the_odd_gait_is_slow_if_it_covers_less_than_the_others(odd_m: float, verdict: str) -> None:
-    found = table1(lambda one: around(odd_m if one.gait == ODD_GAIT else 0.4), name="odd-gait-slow")
-    assert found["verdict"] == verdict
+    odd_gait_claim = table1(
+        lambda setting: around(odd_m if setting.gait == ODD_GAIT else 0.4), name="odd-gait-slow"
+    )
+    assert odd_gait_claim["verdict"] == verdict
 
 
 def test_the_other_gaits_are_alike_unless_one_is_far_behind() -> None:
-    def uneven(one: TrialSetting) -> Callable[[int], float]:
-        return around({ODD_GAIT: 0.1, "front-back-origin": 0.2}.get(one.gait, 0.4))
+    def uneven(setting: TrialSetting) -> Callable[[int], float]:
+        return around({ODD_GAIT: 0.1, "front-back-origin": 0.2}.get(setting.gait, 0.4))
 
     assert (
-        table1(lambda one: around(0.1 if one.gait == ODD_GAIT else 0.4), name="gaits-alike")[
-            "verdict"
-        ]
+        table1(
+            lambda setting: around(0.1 if setting.gait == ODD_GAIT else 0.4), name="gaits-alike"
+        )["verdict"]
         == "holds"
     )
     assert table1(uneven, name="gaits-alike")["verdict"] == "does not hold"
@@ -113,29 +115,31 @@ def test_the_other_gaits_are_alike_unless_one_is_far_behind() -> None:
 
 def test_the_odd_gait_is_not_judged_without_all_four_gaits() -> None:
     summary = summary_of("table1", everywhere(0.3), seeds=6, gaits=("left-right-origin", ODD_GAIT))
-    assert "odd-gait-slow" not in [one["id"] for one in summary["claims"]]
+    assert "odd-gait-slow" not in [claim_entry["id"] for claim_entry in summary["claims"]]
 
 
 @pytest.mark.parametrize("seeds", [1, 2])
 def test_with_too_few_seeds_no_claim_about_a_learner_is_established(seeds: int) -> None:
     summary = summary_of("table1", everywhere(0.4), seeds=seeds)
-    learners = [one for one in summary["claims"] if one["id"] != "two-step-slow"]
+    learners = [
+        claim_entry for claim_entry in summary["claims"] if claim_entry["id"] != "two-step-slow"
+    ]
     assert {learner["verdict"] for learner in learners} == {"not established"}
 
 
 def test_where_the_cases_disagree_the_verdict_depends_and_the_evidence_lists_them() -> None:
     summary = summary_of(
         "table1",
-        lambda one: around(0.42 if one.training.observation == "measured" else 0.1),
+        lambda setting: around(0.42 if setting.training.observation == "measured" else 0.1),
         seeds=12,
         robots=ROBOTS[:1],
     )
-    found = claim(summary, "real-time-1000")
-    assert found["verdict"] == "depends"
-    assert found["evidence"] == (
+    merged = claim(summary, "real-time-1000")
+    assert merged["verdict"] == "depends"
+    assert merged["evidence"] == (
         "It depends: it holds with feet measured; it does not hold with commands remembered."
     )
-    assert [(one["observation"], one["verdict"]) for one in found["where"]] == [
+    assert [(case["observation"], case["verdict"]) for case in merged["where"]] == [
         ("measured", "holds"),
         ("commanded", "does not hold"),
     ]
@@ -158,12 +162,12 @@ def test_a_curve_that_stays_near_zero_neither_improves_nor_satisfies() -> None:
 
 
 def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
-    def far(one: TrialSetting) -> Callable[[int], float]:
-        return around({0.1: 0.3, 0.3: 0.35, 0.6: 0.45}[alpha_of(one)])
+    def far(setting: TrialSetting) -> Callable[[int], float]:
+        return around({0.1: 0.3, 0.3: 0.35, 0.6: 0.45}[alpha_of(setting)])
 
-    found = claim(summary_of("sweep", far, seeds=8, alpha=(0.1, 0.3, 0.6)), "tuning")
-    assert found["verdict"] == "holds"
-    assert "α\xa00.6" in found["evidence"]
+    best_is_better = claim(summary_of("sweep", far, seeds=8, alpha=(0.1, 0.3, 0.6)), "tuning")
+    assert best_is_better["verdict"] == "holds"
+    assert "α\xa00.6" in best_is_better["evidence"]
     same = claim(summary_of("sweep", everywhere(0.3), seeds=8, alpha=(0.3, 0.6)), "tuning")
     assert same["verdict"] == "not established"
 
@@ -171,12 +175,15 @@ def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
 def test_tuning_is_judged_only_over_the_same_gaits_while_trials_are_incomplete() -> None:
     tried = config("sweep", seeds=6, alpha=(0.1, 0.3, 0.6))
     results = sample_results(tried, everywhere(0.3))
-    parts = [dict(list(results.items())[:done]) for done in range(len(results) + 1)]
-    found = [[one["id"] for one in summarise(tried, part)["claims"]] for part in parts]
+    prefixes = [dict(list(results.items())[:done]) for done in range(len(results) + 1)]
+    claim_ids = [
+        [entry["id"] for entry in summarise(tried, done_results)["claims"]]
+        for done_results in prefixes
+    ]
     # 4 greedy, and of each of 3 rates the first seed in each of 4 gaits; the second rate is
     # the paper's, and complete when there is one more
-    assert found.index(["tuning"]) == 4 + 3 * 3 + 2
-    assert found[-1] == ["tuning"]
+    assert claim_ids.index(["tuning"]) == 4 + 3 * 3 + 2
+    assert claim_ids[-1] == ["tuning"]
 
 
 def test_tuning_is_not_judged_without_the_papers_values() -> None:
@@ -192,20 +199,22 @@ def test_claims_are_added_as_trials_complete() -> None:
 
 
 @pytest.mark.parametrize(
-    ("in_one_go_m", "told"),
+    ("in_one_go_m", "conclusion"),
     [
         (0.45, "So the plateau is that of the restarted ε, not of the learner."),
         (0.4, "Whether one go is better there is not established."),
         (0.3, "So there the restarted ε costs nothing."),
     ],
 )
-def test_the_plateau_of_the_blocks_is_compared_with_one_go(in_one_go_m: float, told: str) -> None:
-    def far(one: TrialSetting) -> Callable[[int], float]:
-        return around(0.4 if one.trial.blocks > 1 else in_one_go_m, 0.02)
+def test_the_plateau_of_the_blocks_is_compared_with_one_go(
+    in_one_go_m: float, conclusion: str
+) -> None:
+    def far(setting: TrialSetting) -> Callable[[int], float]:
+        return around(0.4 if setting.trial.blocks > 1 else in_one_go_m, 0.02)
 
     summary = summary_of("figure4", far, seeds=12, observations=("measured",))
     story = {section["heading"]: section["text"] for section in summary["story"]}
 
-    assert story["The plateau and the restarted ε"].endswith(told)
+    assert story["The plateau and the restarted ε"].endswith(conclusion)
     for name in ("flattens", "inclines"):
         assert "in one go 2,000 steps come to " in claim(summary, name)["evidence"]

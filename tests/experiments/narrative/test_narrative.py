@@ -14,12 +14,12 @@ ODD_GAIT = "left-right-vertical"
 
 def text_under(summary: dict[str, list[dict[str, str]]], heading: str) -> str:
     """Return the text under a heading, with no-break spaces replaced."""
-    found = next(one["text"] for one in summary["story"] if one["heading"] == heading)
-    return found.replace("\xa0", " ")
+    text = next(section["text"] for section in summary["story"] if section["heading"] == heading)
+    return text.replace("\xa0", " ")
 
 
 def headings(summary: dict[str, list[dict[str, str]]]) -> Sequence[str]:
-    return [one["heading"] for one in summary["story"]]
+    return [section["heading"] for section in summary["story"]]
 
 
 def test_the_seeds_spread_and_wrong_winners_are_described() -> None:
@@ -39,9 +39,9 @@ def test_the_seeds_spread_and_wrong_winners_are_described() -> None:
 def test_the_observation_closer_to_the_printed_numbers_is_named() -> None:
     printed = {500: 0.16, 1000: 0.28}  # the printed numbers' averages
 
-    def far(one: TrialSetting) -> Callable[[int], float]:
-        near = one.training.observation == "commanded"
-        return around(printed[one.training.steps] if near else 0.49)
+    def far(setting: TrialSetting) -> Callable[[int], float]:
+        near = setting.training.observation == "commanded"
+        return around(printed[setting.training.steps] if near else 0.49)
 
     summary = summary_of("table1", far, seeds=10, robots=ROBOTS[:1])
     text = text_under(summary, "Two readings of the same robot")
@@ -64,8 +64,8 @@ def test_equal_observations_leave_the_closer_one_not_established() -> None:
 
 
 def test_the_odd_gait_is_explained_only_on_mujoco() -> None:
-    def far(one: TrialSetting) -> Callable[[int], float]:
-        return around(0.15 if one.gait == ODD_GAIT and one.robot == "compliant" else 0.4)
+    def far(setting: TrialSetting) -> Callable[[int], float]:
+        return around(0.15 if setting.gait == ODD_GAIT and setting.robot == "compliant" else 0.4)
 
     heading = "Why Left-right, mirrored (LeftRight-Vertical) is the odd one"
     assert heading not in headings(summary_of("table1", far, seeds=6))
@@ -96,7 +96,7 @@ def test_the_caution_names_few_seeds_missing_trials_and_the_simulator() -> None:
 def test_a_sweep_names_its_best_and_worst() -> None:
     summary = summary_of(
         "sweep",
-        lambda one: around({0.1: 0.1, 0.3: 0.3, 0.6: 0.4}[alpha_of(one)], 0.001),
+        lambda setting: around({0.1: 0.1, 0.3: 0.3, 0.6: 0.4}[alpha_of(setting)], 0.001),
         seeds=5,
         alpha=(0.1, 0.3, 0.6),
     )
@@ -109,7 +109,7 @@ def test_a_sweep_of_learners_names_what_varies_for_each_and_not_what_only_some_h
     far = {"q-learning": 0.1, "sarsa-lambda": 0.2, "r-max": 0.4}
     summary = summary_of(
         "sweep",
-        lambda one: around(far[one.training.agent], 0.001),
+        lambda setting: around(far[setting.training.agent], 0.001),
         seeds=5,
         agents=tuple(far),
         steps=(250, 500),

@@ -16,8 +16,8 @@ def opened(tab: Page, folder: Path, summary: Any) -> list[str]:
     file.write_text(page(summary))
     tab.goto(file.as_uri())
     tab.locator("h1").wait_for()
-    own = ("data:text/javascript;base64,", file.as_uri())
-    return [url for url in requested if not url.startswith(own)]
+    own_addresses = ("data:text/javascript;base64,", file.as_uri())
+    return [url for url in requested if not url.startswith(own_addresses)]
 
 
 def text_of(tab: Page) -> str:

@@ -39,9 +39,9 @@ RIGHT_TO_LEFT = "\u202egnorw"
 LRO = "left-right-origin"
 
 
-def small(experiment: str = "table1", **given: Any) -> tuple[Any, Results]:
+def small(experiment: str = "table1", **options: Any) -> tuple[Any, Results]:
     """Return summary and results of one gait in one case with three seeds."""
-    only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1], **given}
+    only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1], **options}
     tried = config(experiment, seeds=3, **only)
     results = sample_results(tried, lambda _: around(0.3))
     return summarise(tried, results), results
@@ -73,7 +73,9 @@ def test_an_older_report_is_replaced(tmp_path: Path) -> None:
     written = write_files(tmp_path, report_files(summary, results))
     assert written == tmp_path / "report.html"
     assert written.read_text() == page(summary)
-    files = {one.relative_to(tmp_path).as_posix() for one in tmp_path.rglob("*") if one.is_file()}
+    files = {
+        file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*") if file.is_file()
+    }
     assert files == {"report.html", "summary.json", "trials.csv"}
 
 
@@ -243,7 +245,7 @@ def test_an_experiment_without_trials_has_a_page(shown: Page, tmp_path: Path) ->
 
 
 def _csv(summary: Any, results: Results) -> bytes:
-    aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    aside = {entry["key"]: entry["reason"] for entry in summary["trials"]["set_aside"]}
     return trials_csv(from_json(ExperimentConfig, summary["config"]), results, aside)
 
 

@@ -132,8 +132,8 @@ def test_newer_schema_is_refused(backend: str, postgresql: PostgresServer, tmp_p
             open_store(Settings(data=tmp_path, database_url=url)).__enter__()
         assert "\n" not in str(error.value)
         state = text("SELECT state FROM runs")
-        kept = database.read(lambda connection: connection.execute(state).scalar())
-        assert kept == "queued"
+        stored_state = database.read(lambda connection: connection.execute(state).scalar())
+        assert stored_state == "queued"
         database.close()
 
 

@@ -19,9 +19,9 @@ from hexapods.domain.robot_library import LIBRARY
 from tests.storage import stores
 
 
-def training(run_id: str, made: Robot) -> Run:
+def training(run_id: str, robot: Robot) -> Run:
     return stores.training(
-        run_id, state="finished", config=replace(stores.PLAIN, gait="trot", robot=made)
+        run_id, state="finished", config=replace(stores.PLAIN, gait="trot", robot=robot)
     )
 
 
@@ -29,8 +29,8 @@ def body(femur_m: float = 0.09) -> Robot:
     return robot({"preset": "dog", "femur_m": femur_m})
 
 
-def add(store: RunStore, made: Robot, name: str) -> StoredRobot:
-    document = document_of(made)
+def add(store: RunStore, robot: Robot, name: str) -> StoredRobot:
+    document = document_of(robot)
     about = StoredRobot(id=robot_documents.id_of(document), name=name, gait="trot")
     return store.robots.add(document, about)[0]
 
@@ -55,8 +55,8 @@ def test_a_robot_is_stored_once_and_found_by_id_and_name(store: RunStore, tmp_pa
 def test_it_is_there_after_a_restart_with_all_that_is_said_of_it(tmp_path: Path) -> None:
     with stores.opened(tmp_path, None) as store:
         rex = add(store, body(), "Rex")
-        own = GaitSpec(1, 2, groups=((1, 2), (3, 4)))
-        changed = store.robots.change(rex.id, name="Max", hidden=True, gait=own)
+        gait = GaitSpec(1, 2, groups=((1, 2), (3, 4)))
+        changed = store.robots.change(rex.id, name="Max", hidden=True, gait=gait)
     LIBRARY.forget([rex.id])
     with stores.opened(tmp_path, None) as store:
         assert store.robots.get(rex.id) == changed
