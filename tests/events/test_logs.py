@@ -78,11 +78,11 @@ def test_steps_are_counted_and_state_changes_logged(written: io.StringIO) -> Non
     assert (bus.steps, bus.steps_per_s) == (120, 2.0)
     bus.publish("run-deleted", {"id": "abc"}, "abc")
     logged = [json.loads(line) for line in written.getvalue().splitlines()]
-    assert [one["message"] for one in logged] == [
+    assert [entry["message"] for entry in logged] == [
         "training is queued",
         "training is running",
         "training is failed",
         "deleted",
     ]
-    assert {one["run_id"] for one in logged} == {"abc"}
+    assert {entry["run_id"] for entry in logged} == {"abc"}
     assert (logged[2]["level"], logged[2]["error"]) == ("warning", "It broke.")

@@ -48,7 +48,7 @@ def test_longest_idle_connection_of_the_same_address_is_evicted() -> None:
     first[0].set_busy(True)
     first[0].set_busy(False)  # idle for less long than the second
     clients.must_connect("10.0.0.1")
-    assert [one[1].is_aborted for one in (working, first, second)] == [False, False, True]
+    assert [client[1].is_aborted for client in (working, first, second)] == [False, False, True]
     assert (len(clients.table), clients.table.evicted) == (3, 1)
 
 

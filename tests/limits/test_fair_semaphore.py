@@ -85,9 +85,9 @@ def test_closing_sends_all_away() -> None:
         await asyncio.sleep(0)
         semaphore.close()
         for refused in (waiting, semaphore.acquire("c")):
-            with pytest.raises(NotAdmitted) as told:
+            with pytest.raises(NotAdmitted) as raised:
                 await refused
-            assert told.value.reason == "closed"
+            assert raised.value.reason == "closed"
         semaphore.release("a")
 
     asyncio.run(scenario())

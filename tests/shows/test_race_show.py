@@ -342,9 +342,9 @@ def test_original_lanes_run_along_from_the_branch_on(parts: StageParts) -> None:
     pairs = [(frame.lanes[0], frame.ghost_lanes[0]) for frame in parts.watch_to_end()]
 
     assert {ghost is None for lane, ghost in pairs if lane.step <= 3} == {True}
-    beside = [(lane, ghost) for lane, ghost in pairs if lane.step > 3]
-    assert {ghost.step == lane.step for lane, ghost in beside if ghost} == {True}
-    last = beside[-1][1]
+    after_branch = [(lane, ghost) for lane, ghost in pairs if lane.step > 3]
+    assert {ghost.step == lane.step for lane, ghost in after_branch if ghost} == {True}
+    last = after_branch[-1][1]
     assert last is not None
     assert last.qpos == pytest.approx(recording.steps[-1].motion.qpos[-1])
     assert last.distance_m == recording.distance_m

@@ -85,40 +85,44 @@ def test_a_table_of_another_stored_robot_brings_that_too(tmp_path: Path) -> None
         ended_training(store, TRAINING, robot=rex, gait="trot")
         race = ended_race(store, RACED, TRAINING, robot=other, gait="trot")
         assert isinstance(race.result, RaceResult)
-        found = members(export_run(store, RACED))
-        assert {name for name in found if name.startswith("robot-")} >= {f"robot-{other.id}.json"}
+        archive_members = members(export_run(store, RACED))
+        assert {name for name in archive_members if name.startswith("robot-")} >= {
+            f"robot-{other.id}.json"
+        }
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
-        (lambda found: found.pop(MEMBER), r"no stored robot .* \(Rex\); import its document"),
+        (lambda files: files.pop(MEMBER), r"no stored robot .* \(Rex\); import its document"),
         (
-            lambda found: found.update({MEMBER: DOCUMENT.replace(b"0.09", b"0.08")}),
+            lambda files: files.update({MEMBER: DOCUMENT.replace(b"0.09", b"0.08")}),
             "the document of another robot",
         ),
-        (lambda found: found.update({MEMBER: DOCUMENT[:-1]}), "cannot be taken in"),
-        (lambda found: found.update({MEMBER: b"{}"}), "cannot be taken in"),
+        (lambda files: files.update({MEMBER: DOCUMENT[:-1]}), "cannot be taken in"),
+        (lambda files: files.update({MEMBER: b"{}"}), "cannot be taken in"),
         (
-            lambda found: found.update({f"robot-{'0' * 16}.json": DOCUMENT}),
+            lambda files: files.update({f"robot-{'0' * 16}.json": DOCUMENT}),
             "the document of another robot",
         ),
         (
-            lambda found: found.update({_member_of(0.07): _document(0.07)}),
+            lambda files: files.update({_member_of(0.07): _document(0.07)}),
             "which its run does not use",
         ),
         (
-            lambda found: found.update({RUN: found[RUN].replace(ID.encode(), b"0" * 16)}),
+            lambda files: files.update({RUN: files[RUN].replace(ID.encode(), b"0" * 16)}),
             "no stored robot '0000000000000000'",
         ),
     ],
 )
-def test_a_robot_that_does_not_fit_is_refused(exported: bytes, change: object, told: str) -> None:
-    found = members(exported)
-    change(found)  # type: ignore[operator]
+def test_a_robot_that_does_not_fit_is_refused(
+    exported: bytes, change: object, message: str
+) -> None:
+    files = members(exported)
+    change(files)  # type: ignore[operator]
     with temporary_store() as store:
-        with pytest.raises((DamagedFile, InvalidInput), match=told):
-            imported(store, archive.pack(found))
+        with pytest.raises((DamagedFile, InvalidInput), match=message):
+            imported(store, archive.pack(files))
         assert store.list().items == []
         assert store.robots.stored(hidden=True) == []
         with pytest.raises(InvalidInput):

@@ -37,11 +37,11 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
         assert output("export", run_id, *out, folder=tmp_path)["id"] == run_id
         other = ("--data", str(tmp_path / "other"))
         assert output("import", "run.zip", *other, folder=tmp_path, run=in_process)["id"] == run_id
-        there = [
+        shown = [
             output("runs", "show", run_id, *at, folder=tmp_path, run=in_process)
             for at in (out[2:], other)
         ]
-        assert there[0] == there[1]
+        assert shown[0] == shown[1]
         again = output("import", "run.zip", *other, folder=tmp_path, run=in_process)
         assert again["id"] != run_id
     imported = in_process("import", "run.zip", "--data", str(data), folder=tmp_path)
@@ -61,15 +61,15 @@ def test_several_runs_are_exported_and_imported_together(data: Path, tmp_path: P
 
 
 def test_an_unknown_run_is_refused_with_a_hint(data: Path, tmp_path: Path) -> None:
-    asked = ("export", "--out", "x", "../nope", "--data", str(data))
-    sentence = refusal(*asked, folder=tmp_path, run=in_process)
+    arguments = ("export", "--out", "x", "../nope", "--data", str(data))
+    sentence = refusal(*arguments, folder=tmp_path, run=in_process)
     assert "no run '../nope'" in sentence
     assert "`hexapods runs list`" in sentence
     assert not (tmp_path / "x").exists()
 
 
 def test_invalid_archive_or_output_is_refused_in_one_sentence(data: Path, tmp_path: Path) -> None:
-    here = ("--data", str(data))
+    data_option = ("--data", str(data))
     (tmp_path / "junk.zip").write_text("milk")
     (tmp_path / "folder").mkdir()
     for file, names in (
@@ -77,18 +77,20 @@ def test_invalid_archive_or_output_is_refused_in_one_sentence(data: Path, tmp_pa
         ("missing.zip", "cannot read missing.zip"),
         ("folder", "cannot read folder"),
     ):
-        assert names in refusal("import", file, *here, folder=tmp_path, run=in_process)
+        assert names in refusal("import", file, *data_option, folder=tmp_path, run=in_process)
     for out, names in (("no/such/x.zip", "can be written"), ("folder", "it is a folder")):
-        sentence = refusal("export", TRAINING, "--out", out, *here, folder=tmp_path, run=in_process)
+        sentence = refusal(
+            "export", TRAINING, "--out", out, *data_option, folder=tmp_path, run=in_process
+        )
         assert names in sentence
 
 
 def test_export_works_beside_a_server_and_import_needs_its_address(
     locked_store: RunStore, data: Path, tmp_path: Path
 ) -> None:
-    here = ("--data", str(data))
+    data_option = ("--data", str(data))
     locked_store.create(training("zz", state="running"))
-    assert "stop it first" in refusal("export", "zz", "--out", "x", *here, folder=tmp_path)
-    assert output("export", RACED, "--out", "x.zip", *here, folder=tmp_path)["id"] == RACED
-    sentence = refusal("import", "x.zip", *here, folder=tmp_path)
+    assert "stop it first" in refusal("export", "zz", "--out", "x", *data_option, folder=tmp_path)
+    assert output("export", RACED, "--out", "x.zip", *data_option, folder=tmp_path)["id"] == RACED
+    sentence = refusal("import", "x.zip", *data_option, folder=tmp_path)
     assert f"another process has the data folder {data}" in sentence

@@ -35,14 +35,16 @@ def server(data: Path) -> Iterator[Served]:
 def test_runs_are_imported_by_the_running_server(
     server: Served, data: Path, tmp_path: Path
 ) -> None:
-    here = ("--data", str(data))
-    output("export", RACED, "--out", "run.zip", *here, folder=tmp_path)
+    data_option = ("--data", str(data))
+    output("export", RACED, "--out", "run.zip", *data_option, folder=tmp_path)
     exported = server.client.get(f"/api/v1/races/{RACED}/export")
     assert exported.content == (tmp_path / "run.zip").read_bytes()
     assert "race-" in exported.headers["content-disposition"]
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     assert server.client.delete(f"/api/v1/races/{RACED}", headers=bearer).status_code == 204
-    done = hexapods("import", "run.zip", "--json", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+    done = hexapods(
+        "import", "run.zip", "--json", *data_option, folder=tmp_path, HEXAPODS_TOKEN=TOKEN
+    )
     assert json.loads(done.stdout)["id"] == RACED, done.stderr
     shown = server.client.get(f"/api/v1/races/{RACED}").json()
     assert shown["result"]["lanes"][1]["agent"] == "greedy"
@@ -51,8 +53,8 @@ def test_runs_are_imported_by_the_running_server(
 
 def test_refusals_of_the_server_are_reported(server: Served, data: Path, tmp_path: Path) -> None:
     (tmp_path / "junk.zip").write_bytes(b"milk")
-    here = ("--data", str(data))
-    said = refusal("import", "junk.zip", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+    data_option = ("--data", str(data))
+    said = refusal("import", "junk.zip", *data_option, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
     assert "is no archive of a run" in said
     assert server.address in said
 

@@ -116,15 +116,18 @@ def test_export_and_import_preserve_everything(
         for name in (TABLE, RACE, PRACTICE, transitions_file(0)):
             assert target.artifact(run_id, name) == source.artifact(run_id, name)
         assert export_run(target, run_id) == data
-        here, there = Recordings(target), Recordings(source)
+        imported_recordings, source_recordings = Recordings(target), Recordings(source)
         if run_id == RACED:
-            lanes, were = here.race(run_id), there.race(run_id)
+            lanes, were = imported_recordings.race(run_id), source_recordings.race(run_id)
             assert lanes is not None
             assert were is not None
             same = zip(race_arrays(lanes).values(), race_arrays(were).values(), strict=True)
-            assert all(one.tobytes() == other.tobytes() for one, other in same)
+            assert all(array.tobytes() == other.tobytes() for array, other in same)
         else:
-            practised, was = here.training(run_id), there.training(run_id)
+            practised, was = (
+                imported_recordings.training(run_id),
+                source_recordings.training(run_id),
+            )
             assert practised is not None
             assert was is not None
             assert [s.step for s in practised.steps] == [s.step for s in was.steps]
@@ -156,8 +159,8 @@ def test_several_runs_are_one_archive_that_is_taken_in_whole(
     assert members[TRAINING_ZIP] == export_run(source, TRAINING), "each is an archive by itself"
     assert imported_runs(data, store) == [source.get(TRAINING), source.get(RACED)]
     assert store.artifact(RACED, RACE) == source.artifact(RACED, RACE)
-    [one] = imported_runs(export_run(source, RACED), store)
-    assert one.id not in (TRAINING, RACED), "one run by itself is taken in too"
+    [imported_run] = imported_runs(export_run(source, RACED), store)
+    assert imported_run.id not in (TRAINING, RACED), "one run by itself is taken in too"
 
 
 def test_an_archive_of_several_runs_is_refused_as_a_whole(
@@ -290,10 +293,10 @@ def test_branch_of_a_race_is_exported_and_imported(source: RunStore, store: RunS
         branch_from=Branch(RACED, 3),
     )
     raced = result_of_race(original)
-    known: tuple[PlanningModel | None, ...] = (None, "nominal")
+    models: tuple[PlanningModel | None, ...] = (None, "nominal")
     lanes = [
         replace(lane, plans_with=model, fell_at_step=None, heading_deg=1.5)
-        for lane, model in zip(raced.lanes, known, strict=True)
+        for lane, model in zip(raced.lanes, models, strict=True)
     ]
     result = replace(raced, lanes=tuple(lanes))
     branch = replace(
@@ -336,8 +339,8 @@ def test_training_that_was_disturbed_while_it_ran_is_exported_and_imported(
 
 def _set(name: str, value: Any, *path: str | int) -> Change:
     def change(content: Any) -> None:
-        for part in path:
-            content = content[part]
+        for key in path:
+            content = content[key]
         content[name] = value
 
     return change
@@ -522,22 +525,22 @@ def test_recordings_of_another_length_than_their_runs_are_refused(source: RunSto
 
         return apply
 
-    def changed(name: str, part: str, change: Change) -> bytes:
+    def changed(name: str, array_name: str, change: Change) -> bytes:
         with np.load(io.BytesIO(source.artifact(TRAINING, name) or b"")) as file:
             arrays = {key: file[key] for key in file.files}
-        arrays[part] = change(arrays[part])
+        arrays[array_name] = change(arrays[array_name])
         buffer = io.BytesIO()
         np.savez(buffer, **arrays)
         return repacked(export_run(source, TRAINING), **{name.replace(".", "_"): buffer.getvalue()})
 
-    for name, part, change in (
+    for name, array_name, change in (
         (PRACTICE, "scalars", scalars(0, lambda steps: steps * 1000)),
         (PRACTICE, "scalars", scalars(0, lambda steps: steps - 1)),
         (PRACTICE, "scalars", scalars(0, lambda steps: steps[::-1])),
         (evaluations_file(0), "scalars", scalars(0, lambda steps: steps * 1000)),
         (evaluations_file(0), "scalars", scalars(0, lambda steps: steps[::-1])),
     ):
-        assert "cannot be shown" in refusal(changed(name, part, change)), (name, part)
+        assert "cannot be shown" in refusal(changed(name, array_name, change)), (name, array_name)
     lane = "lane0.time_s"
     slow = _race_with(source, lambda arrays: arrays.update({lane: arrays[lane] * 2}))
     assert "take longer" in refusal(slow)

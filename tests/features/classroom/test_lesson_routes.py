@@ -52,7 +52,7 @@ def test_a_lesson_is_the_same_as_json_and_as_a_file(api: Api) -> None:
     assert shown["cards"][1]["may"]["gamma"] == {"minimum": None, "maximum": None, "choices": None}
     assert "<strong>one</strong>" in shown["html"][0]["text"]
     assert "&lt;3" in shown["html"][0]["text"]
-    listed = {one["id"]: one for one in api.get("/lessons")["items"]}
+    listed = {entry["id"]: entry for entry in api.get("/lessons")["items"]}
     assert listed[lesson_id]["cards"] == 2
     assert api.client.get(f"/l/{lesson_id}").url.query == f"lesson={lesson_id}".encode()
     assert api.call("DELETE", f"/lessons/{lesson_id}").status_code == 204
@@ -60,11 +60,11 @@ def test_a_lesson_is_the_same_as_json_and_as_a_file(api: Api) -> None:
 
 
 def test_built_in_lessons_can_be_started_and_exported(api: Api) -> None:
-    known = built_in()
-    listed = {one["id"] for one in api.get("/lessons")["items"] if one["is_built_in"]}
-    assert listed == set(known)
+    lessons = built_in()
+    listed = {entry["id"] for entry in api.get("/lessons")["items"] if entry["is_built_in"]}
+    assert listed == set(lessons)
     assert len(listed) >= 2
-    for lesson_id, lesson in known.items():
+    for lesson_id, lesson in lessons.items():
         assert read_file(write_file(lesson).encode(), lesson_id) == lesson
         assert lesson.aims
         file = api.call("GET", f"/lessons/{lesson_id}?format=yaml").content

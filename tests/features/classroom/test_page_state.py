@@ -15,9 +15,9 @@ FEATURES = page_features(PageFiles(assets.static_dir()))
 
 def words(name: str) -> list[str]:
     """Return the words of a constant of the page."""
-    found = re.search(rf"const {name} = \[(.*?)\];", SOURCE)
-    assert found is not None
-    return re.findall(r'"([^"]+)"', found[1])
+    match = re.search(rf"const {name} = \[(.*?)\];", SOURCE)
+    assert match is not None
+    return re.findall(r'"([^"]+)"', match[1])
 
 
 def added(member: str) -> list[str]:
@@ -27,9 +27,9 @@ def added(member: str) -> list[str]:
 
 def test_each_field_is_one_of_the_page() -> None:
     block = SOURCE[SOURCE.index("const FIELDS = {") :]
-    known = re.findall(r"^  (\w+): \{ part:", block, flags=re.MULTILINE)
-    assert {"view", "hidden", "selected"} <= set(known)
-    assert {field.name for field in fields(PageState)} <= {*known, *added("fields")}
+    fields_of_page = re.findall(r"^  (\w+): \{ part:", block, flags=re.MULTILINE)
+    assert {"view", "hidden", "selected"} <= set(fields_of_page)
+    assert {field.name for field in fields(PageState)} <= {*fields_of_page, *added("fields")}
 
 
 def test_words_are_those_of_the_page() -> None:

@@ -11,8 +11,8 @@ OUTCOMES = [WalkOutcome(0.1 * n, curve=[(50, 0.0), (100, 0.1 * n)]) for n in ran
 
 
 def card(ask: dict[str, object], **fields: object) -> Card:
-    asked = {"text": "?", **ask}
-    return read_lesson({"title": "x", "cards": [{"text": "", "ask": asked, **fields}]}).cards[0]
+    question = {"text": "?", **ask}
+    return read_lesson({"title": "x", "cards": [{"text": "", "ask": question, **fields}]}).cards[0]
 
 
 def scorer(card: Card, outcomes: list[WalkOutcome]) -> Scorer:
@@ -38,7 +38,7 @@ def test_an_answer_of_the_lesson_decides() -> None:
     assert scorer(asks, OUTCOMES)(16).is_right
     assert scorer(asks, OUTCOMES)(12) == Score(is_right=False, error=4)
     choice = card({"kind": "choice", "choices": ["a", "b"]}, reveal={"answer": "b"})
-    assert [scorer(choice, [])(one).is_right for one in ("a", "b")] == [False, True]
+    assert [scorer(choice, [])(answer).is_right for answer in ("a", "b")] == [False, True]
 
 
 def test_a_choice_among_agents_has_its_share_of_the_races() -> None:
@@ -47,7 +47,7 @@ def test_a_choice_among_agents_has_its_share_of_the_races() -> None:
         card({"kind": "choice", "choices": ["greedy", "q-learning", "beam", "wave"]}),
         [WalkOutcome(0.1, winners) for winners in races],
     )
-    shares = [score(one).share for one in ("greedy", "q-learning", "beam", "wave")]
+    shares = [score(agent).share for agent in ("greedy", "q-learning", "beam", "wave")]
     assert shares == [0.375, 0.375, 0.25, 0]
 
 

@@ -136,7 +136,7 @@ def test_a_class_predicts_runs_and_sees_what_came_of_it(school: Class) -> None:
         school.finished(run)
 
     def own(view: dict[str, Any]) -> dict[str, Any]:
-        result: dict[str, Any] = next(one for one in view["cards"] if one["card"] == 1)
+        result: dict[str, Any] = next(card for card in view["cards"] if card["card"] == 1)
         return result
 
     before = own(pupils[1].get(f"/rooms/{code}/results"))
@@ -321,10 +321,10 @@ def test_what_the_card_does_not_allow_is_refused(school: Class) -> None:
 
 def test_others_see_no_run_before_the_reveal(school: Class) -> None:
     code = school.room()
-    one, other = school.joined(code), school.joined(code)
+    first, second = school.joined(code), school.joined(code)
     spectator = school.pupil()
     school.show(code, 1)
-    run = started(one.call("POST", f"/rooms/{code}/runs"))
+    run = started(first.call("POST", f"/rooms/{code}/runs"))
     school.finished(run)
 
     def sees(api: Api) -> bool:
@@ -334,28 +334,28 @@ def test_others_see_no_run_before_the_reveal(school: Class) -> None:
         assert api.call("GET", f"/runs/curves?id={run['id']}").status_code == answer.status_code
         return run["id"] in listed
 
-    assert [sees(api) for api in (school.teacher, one, other, spectator)] == [
+    assert [sees(api) for api in (school.teacher, first, second, spectator)] == [
         *(True, True, False, False)
     ]
     answer = school.teacher.call("PUT", f"/rooms/{code}/spotlight", json={"run_id": run["id"]})
     assert answer.json()["spotlight"] == run["id"]
     shown = school.teacher.client.get(f"/r/{code}/api/v1/stage").json()
     assert shown["run_id"] == run["id"]
-    assert sees(other)
+    assert sees(second)
     assert sees(spectator)
 
 
 def test_names_are_hidden_and_participants_approved(school: Class) -> None:
     code = school.room(needs_approval=True)
-    one, other = school.joined(code), school.joined(code)
+    first, second = school.joined(code), school.joined(code)
     school.show(code, 4)
-    for pupil in (one, other):
+    for pupil in (first, second):
         body = {"card": 4, "value": [1, 2]}
         assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
     school.teacher.call("POST", f"/rooms/{code}/reveal", json={"card": 4})
 
     def others() -> list[tuple[int, str | None]]:
-        (result,) = one.get(f"/rooms/{code}/results?card=4")["cards"]
+        (result,) = first.get(f"/rooms/{code}/results?card=4")["cards"]
         return [(x["seed"], x["name"]) for x in result["entries"] if not x["is_own"]]
 
     assert others() == []
@@ -367,14 +367,14 @@ def test_names_are_hidden_and_participants_approved(school: Class) -> None:
     csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
     assert csv.startswith("card,seed,")
     assert view["people"][1]["name"] not in csv
-    refused(one.call("PATCH", path, json={"is_approved": True}), 403)
+    refused(first.call("PATCH", path, json={"is_approved": True}), 403)
 
 
 def test_nothing_of_a_participant_is_shown_before_the_approval(school: Class) -> None:
     code = school.room(needs_approval=True)
-    one, other = school.joined(code), school.joined(code)
+    first, second = school.joined(code), school.joined(code)
     school.show(code, 1)
-    for pupil in (one, other):
+    for pupil in (first, second):
         body = {"card": 1, "value": 0.1}
         assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
         school.finished(started(pupil.call("POST", f"/rooms/{code}/runs")))
@@ -389,13 +389,13 @@ def test_nothing_of_a_participant_is_shown_before_the_approval(school: Class) ->
     assert seen(school.teacher, projector) == ([], 0)
     school.teacher.call("POST", f"/rooms/{code}/reveal")
     # Each sees the own one alone, also among the distances without a name.
-    assert seen(one) == ([0], 1)
+    assert seen(first) == ([0], 1)
     path = f"/rooms/{code}/participants/1"
     school.teacher.call("PATCH", path, json={"is_approved": True})
-    assert seen(one) == ([0, 1], 2)
-    assert seen(other) == ([1], 1)
+    assert seen(first) == ([0, 1], 2)
+    assert seen(second) == ([1], 1)
     assert seen(school.teacher, projector) == ([1], 1)
-    assert seen(other, projector) == ([1], 1)
+    assert seen(second, projector) == ([1], 1)
 
 
 def test_a_what_if_is_kept_as_a_result_of_the_card(school: Class) -> None:
@@ -405,40 +405,40 @@ def test_a_what_if_is_kept_as_a_result_of_the_card(school: Class) -> None:
         "ask": {"kind": "number", "text": "How far?", "unit": "m"},
     }
     code = school.room({"title": "x", "cards": [card]})
-    one, other = school.joined(code), school.joined(code)
+    first, second = school.joined(code), school.joined(code)
     path = f"/rooms/{code}/runs"
     prediction = {"card": 0, "value": 0.1}
-    assert one.call("POST", f"/rooms/{code}/predictions", json=prediction).status_code == 201
+    assert first.call("POST", f"/rooms/{code}/predictions", json=prediction).status_code == 201
     settings = {"settings": {"alpha": 0.1}, "card": 0}
-    answer = one.call("POST", path, json=settings).json()
-    assert one.call("POST", path, json=settings).json() == answer
-    assert other.call("POST", path, json={}).status_code == 200
+    answer = first.call("POST", path, json=settings).json()
+    assert first.call("POST", path, json=settings).json() == answer
+    assert second.call("POST", path, json={}).status_code == 200
 
     def entries(api: Api) -> list[dict[str, Any]]:
         view = api.get(f"/rooms/{code}/results?card=0")
         TypeAdapter(ResultsView).validate_python(view)
-        found: list[dict[str, Any]] = view["cards"][0]["entries"]
-        return found
+        entries_of_card: list[dict[str, Any]] = view["cards"][0]["entries"]
+        return entries_of_card
 
-    (own,) = entries(one)
-    assert own["run"]["kind"] == "what-if"
-    assert own["run"]["given"] == {"alpha": 0.1}
-    assert own["run"]["distance_m"] == answer["chosen"]["iqm_m"]
-    assert own["run"]["answer"] == answer
+    (own_entry,) = entries(first)
+    assert own_entry["run"]["kind"] == "what-if"
+    assert own_entry["run"]["given"] == {"alpha": 0.1}
+    assert own_entry["run"]["distance_m"] == answer["chosen"]["iqm_m"]
+    assert own_entry["run"]["answer"] == answer
     # Others see it after the reveal alone, and are told how many have asked.
-    assert [entry["seed"] for entry in entries(other)] == [1]
-    assert other.get(f"/rooms/{code}")["started"] == 2
+    assert [entry["seed"] for entry in entries(second)] == [1]
+    assert second.get(f"/rooms/{code}")["started"] == 2
     view = school.teacher.get(f"/rooms/{code}")
     assert [(x["run_id"], x["run_state"]) for x in view["people"]] == [(None, "finished")] * 2
-    assert one.get(f"/rooms/{code}")["me"]["runs"] == []
-    spotlight = {"run_id": own["run"]["id"]}
+    assert first.get(f"/rooms/{code}")["me"]["runs"] == []
+    spotlight = {"run_id": own_entry["run"]["id"]}
     refused(school.teacher.call("PUT", f"/rooms/{code}/spotlight", json=spotlight), 404)
     csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
     row = csv.splitlines()[1].split(",")
     assert row[8:10] == ["what-if", "finished"]
     assert float(row[-2]) == answer["chosen"]["iqm_m"]
     school.teacher.call("POST", f"/rooms/{code}/reveal")
-    seen = entries(other)
+    seen = entries(second)
     assert [(x["run"]["rank"], x["run"]["answer"] is None) for x in seen if not x["is_own"]] in (
         [(1, True)],
         [(2, True)],
@@ -504,7 +504,7 @@ def test_a_room_that_has_ended_can_be_deleted(school: Class, runs: bool) -> None
     school.teacher.call("POST", f"{path}/end")
     refused(pupil.call("DELETE", path), 401)
     listed = school.teacher.get("/rooms")["items"]
-    assert next(one["state"] for one in listed if one["code"] == code) == "ended"
+    assert next(room["state"] for room in listed if room["code"] == code) == "ended"
     answer = school.teacher.call("DELETE", path, params={"runs": runs})
     assert answer.status_code == 200
     assert answer.json() == {"deleted": [race["id"], training] if runs else [], "kept": []}
@@ -562,7 +562,7 @@ def test_a_teacher_removes_a_participant(school: Class) -> None:
     results = school.teacher.call("GET", f"{path}/results")
     assert name not in results.text
     assert ended["id"] not in results.text
-    assert [one["predicted"] for one in results.json()["cards"]] == [0] * 6
+    assert [card["predicted"] for card in results.json()["cards"]] == [0] * 6
     # Of the removed, a stranger is left, who may join again.
     assert pupil.get(path)["role"] == "spectator"
     refused(pupil.call("POST", f"{path}/predictions", json=body), 401)
@@ -597,7 +597,7 @@ def test_cards_that_are_to_come_have_no_results(school: Class) -> None:
     pupil = school.joined(code)
     school.show(code, 2)
     cards = pupil.get(f"/rooms/{code}/results")["cards"]
-    assert [one["card"] for one in cards] == [0, 1, 2]
+    assert [card["card"] for card in cards] == [0, 1, 2]
     refused(pupil.call("GET", f"/rooms/{code}/results?card=4"), 403, "was not shown yet")
     assert len(school.teacher.get(f"/rooms/{code}/results")["cards"]) == 6
 
@@ -669,14 +669,14 @@ def test_changes_of_a_room_are_events_of_its_stage(school: Class) -> None:
     pupil = school.joined(code)
     school.show(code, 1)
     pupil.call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 0.5})
-    (event,) = [one for one in subscription.drain() if one.event == "room"]
-    told = TypeAdapter(RoomEvent).validate_json(event.data)
-    assert (told.card, told.participants, told.predicted) == (1, 1, 1)
+    (event,) = [event for event in subscription.drain() if event.event == "room"]
+    room_event = TypeAdapter(RoomEvent).validate_json(event.data)
+    assert (room_event.card, room_event.participants, room_event.predicted) == (1, 1, 1)
     run = started(pupil.call("POST", f"/rooms/{code}/runs"))
     school.finished(run)
     assert elsewhere.drain() == []
-    for one in (subscription, elsewhere):
-        one.close()
+    for subscribed in (subscription, elsewhere):
+        subscribed.close()
 
 
 def test_answers_match_their_models(school: Class) -> None:

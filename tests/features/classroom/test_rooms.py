@@ -38,7 +38,7 @@ def store(
 def test_all_is_there_after_a_restart(store: RunStore) -> None:
     rooms = Rooms(store)
     code = rooms.create(LESSON, needs_approval=True).code
-    one, other = rooms.join(code), rooms.join(code)
+    first, second = rooms.join(code), rooms.join(code)
     rooms.predict(code, 0, 0, 0.25)
     rooms.show_card(code, 1)
     rooms.predict(code, 1, 1, [[0, 0], [1, 0.5]])
@@ -50,10 +50,10 @@ def test_all_is_there_after_a_restart(store: RunStore) -> None:
     assert after == before
     assert after.predictions == {(0, 0): 0.25, (1, 1): [[0.0, 0.0], [1.0, 0.5]]}
     again = Rooms(store)
-    assert again.seat(code, one.key) is None
-    seat = again.seat(code, other.key)
+    assert again.seat(code, first.key) is None
+    seat = again.seat(code, second.key)
     assert seat is not None
-    assert (seat.name, seat.seed) == (other.participant.name, 1)
+    assert (seat.name, seat.seed) == (second.participant.name, 1)
     again.end(code)
     with pytest.raises(Conflict, match="has ended"):
         Rooms(store).join(code)
@@ -70,10 +70,10 @@ def test_nothing_is_left_of_a_deleted_room(store: RunStore) -> None:
     rooms.end(code)
     rooms.delete(code)
     assert rooms.seat(code, joined.key) is None
-    for one in (rooms, Rooms(store)):
-        assert [room.code for room in one.all()] == [other]
+    for rooms_now in (rooms, Rooms(store)):
+        assert [room.code for room in rooms_now.all()] == [other]
         with pytest.raises(NotFound):
-            one.get(code)
+            rooms_now.get(code)
     assert RoomRows(store.database).predictions() == []
     assert [participant.room for participant in RoomRows(store.database).participants()] == [other]
 
@@ -85,8 +85,8 @@ def test_the_newest_of_many_what_ifs_is_the_same_after_a_restart(store: RunStore
     rooms.join(code)
     for number in range(12):
         rooms.ask(code, 0, {"alpha": number / 100}, lambda: {"chosen": {"iqm_m": 0.1}}, card=0)
-    assert [one.given["alpha"] for one in Rooms(store).get(code).runs_of(0, 0)] == [
-        one.given["alpha"] for one in rooms.get(code).runs_of(0, 0)
+    assert [what_if.given["alpha"] for what_if in Rooms(store).get(code).runs_of(0, 0)] == [
+        what_if.given["alpha"] for what_if in rooms.get(code).runs_of(0, 0)
     ]
 
 
@@ -96,10 +96,10 @@ def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
     code = rooms.create(read_lesson({"title": "x", "cards": [card, {"text": "d"}]})).code
     rooms.join(code)
     answer = {"chosen": {"iqm_m": 0.25}}
-    asked: list[str] = []
+    calls: list[str] = []
 
     def compute() -> dict[str, Any]:
-        asked.append("once")
+        calls.append("once")
         # The teacher goes on meanwhile; what was asked is kept.
         rooms.show_card(code, 1)
         return answer
@@ -107,13 +107,13 @@ def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
     assert rooms.ask(code, 0, {"alpha": 0.5}, compute, card=0) == answer
     after = Rooms(store)
     assert after.get(code) == rooms.get(code)
-    (kept,) = after.get(code).runs_of(0, 0)
-    assert (kept.answer, kept.given, kept.is_shown) == (answer, {"alpha": 0.5}, False)
+    (stored,) = after.get(code).runs_of(0, 0)
+    assert (stored.answer, stored.given, stored.is_shown) == (answer, {"alpha": 0.5}, False)
     with pytest.raises(Forbidden, match="is at card 1"):
         after.ask(code, 0, {}, compute, card=0)
     after.show_card(code, 0)
     assert after.ask(code, 0, {"alpha": 0.5}, compute, card=0) == answer
-    assert len(asked) == 1
+    assert len(calls) == 1
     after.reveal(code, 0)
     assert Rooms(store).get(code).runs_of(0, 0)[0].is_shown
 
@@ -216,7 +216,7 @@ def _execute(change: TextClause, values: dict[str, str], connection: Connection)
 def test_nothing_is_left_of_a_removed_participant_but_hidden_runs(store: RunStore) -> None:
     rooms = Rooms(store)
     code = rooms.create(LESSON).code
-    one, other = rooms.join(code), rooms.join(code)
+    first, second = rooms.join(code), rooms.join(code)
     rooms.predict(code, 0, 0, 0.25)
     rooms.predict(code, 1, 0, 0.5)
     linked = RoomRun("0run1of2other", code, 1, 0, {}, True, False, datetime.now(UTC))
@@ -231,7 +231,7 @@ def test_nothing_is_left_of_a_removed_participant_but_hidden_runs(store: RunStor
         room = after.get(code)
         assert list(room.participants) == [0]
         assert (room.predictions, room.runs, room.next_seed) == ({(0, 0): 0.25}, {}, 2)
-        assert (after.seat(code, one.key), after.seat(code, other.key)) == (
+        assert (after.seat(code, first.key), after.seat(code, second.key)) == (
             room.participants[0],
             None,
         )
@@ -239,7 +239,7 @@ def test_nothing_is_left_of_a_removed_participant_but_hidden_runs(store: RunStor
         assert after.runs_in(code) == [linked.run_id]
         with pytest.raises(Forbidden, match="join it again"):
             after.predict(code, 1, 0, 1.0)
-    assert rooms.join(code, other.key).participant.seed == 2
+    assert rooms.join(code, second.key).participant.seed == 2
     with pytest.raises(NotFound):
         rooms.remove_participant(code, 1)
 

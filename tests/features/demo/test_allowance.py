@@ -59,9 +59,9 @@ def test_refusals_say_what_is_allowed_and_when() -> None:
 
 
 def test_times_in_words() -> None:
-    given = (0.2, 40, 99, 100, 3600, 7000, 86_400)
-    told = ["in 1 s", "in 40 s", "in 99 s", "in 2 min", "in 60 min", "in 2 h", "in 24 h"]
-    assert [in_words(one) for one in given] == told
+    seconds = (0.2, 40, 99, 100, 3600, 7000, 86_400)
+    words = ["in 1 s", "in 40 s", "in 99 s", "in 2 min", "in 60 min", "in 2 h", "in 24 h"]
+    assert [in_words(duration) for duration in seconds] == words
 
 
 def test_operators_choose_steps_and_hours() -> None:

@@ -40,8 +40,8 @@ def make_expiry(
     store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, rooms: Rooms | None = None
 ) -> Expiry:
     contests = Tournaments(store, now=clock.time)
-    others: list[Cleaner] = [] if rooms is None else [rooms, OfRooms(contests, rooms)]
-    return Expiry(store, jobs, visitors, others, now=clock.time, now_s=clock.seconds)
+    cleaners: list[Cleaner] = [] if rooms is None else [rooms, OfRooms(contests, rooms)]
+    return Expiry(store, jobs, visitors, cleaners, now=clock.time, now_s=clock.seconds)
 
 
 class OfRooms(NamedTuple):
@@ -154,12 +154,12 @@ def test_no_damage_lets_a_run_outlive_its_day(
     after: Callable[[str], Restarted],
 ) -> None:
     run = wait_until_ended(store, start(visitors, jobs, race_of(training())).run)
-    kept = wait_until_ended(store, jobs.start(training()))
+    run_of_operator = wait_until_ended(store, jobs.start(training()))
     later = after(DAMAGE[damage])
     later.sweep_after(days=1)
     with pytest.raises(NotFound):
         store.find(run.id)
-    assert store.find(kept.id).id == kept.id
+    assert store.find(run_of_operator.id).id == run_of_operator.id
     assert sum(store.counts().values()) == 1
     assert later.visitors.count == 0
     assert VisitorRows(store.database).all() == []
@@ -253,14 +253,14 @@ def test_a_run_that_takes_too_long_is_stopped_and_says_so(
 def test_an_operators_run_that_rests_on_a_visitors_stays_whole(
     store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
 ) -> None:
-    theirs = wait_until_ended(store, start(visitors, jobs, training()).run)
-    lanes = [LaneStart("q-learning", training_id=theirs.id), LaneStart("greedy")]
+    visitors_run = wait_until_ended(store, start(visitors, jobs, training()).run)
+    lanes = [LaneStart("q-learning", training_id=visitors_run.id), LaneStart("greedy")]
     race = wait_until_ended(store, jobs.start(RaceStart(WALK, lanes, 5, 0)))
-    continued = TrainingStart(training().config, continue_from=theirs.id)
+    continued = TrainingStart(training().config, continue_from=visitors_run.id)
     longer = wait_until_ended(store, jobs.start(continued))
     clock.pass_time(days=1)
     expiry.sweep()
-    assert not is_kept(store, theirs.id)
+    assert not is_kept(store, visitors_run.id)
     assert store.get(race.id).result is not None
     assert store.artifact_files(race.id)
     assert store.get(longer.id).state == "finished"
@@ -273,19 +273,19 @@ def test_an_operators_run_that_rests_on_a_visitors_stays_whole(
 def test_an_operators_run_that_waits_for_a_visitors_keeps_it_until_it_has_started(
     store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
 ) -> None:
-    theirs = wait_until_ended(store, start(visitors, jobs, training()).run)
+    visitors_run = wait_until_ended(store, start(visitors, jobs, training()).run)
     blocker = jobs.start(endless())
     wait_for_progress(store, blocker)
-    lanes = [LaneStart("q-learning", training_id=theirs.id), LaneStart("greedy")]
+    lanes = [LaneStart("q-learning", training_id=visitors_run.id), LaneStart("greedy")]
     race = jobs.start(RaceStart(WALK, lanes, 5, 0))
     clock.pass_time(days=1)
     expiry.sweep()
-    assert is_kept(store, theirs.id)
+    assert is_kept(store, visitors_run.id)
     assert visitors.count == 1
     jobs.stop(blocker.id)
     assert wait_until_ended(store, race).state == "finished"
     expiry.sweep()
-    assert not is_kept(store, theirs.id)
+    assert not is_kept(store, visitors_run.id)
     assert visitors.count == 0
 
 
@@ -312,7 +312,7 @@ def test_a_visitor_is_ended_by_the_operator(
 ) -> None:
     started = start(visitors, jobs, race_of(training(steps=40, pace=0.5)))
     other = start(visitors, jobs, training())
-    (visitor_id,) = (one for one, runs in visitors.by_visitor().items() if len(runs) == 2)
+    (visitor_id,) = (visitor for visitor, runs in visitors.by_visitor().items() if len(runs) == 2)
     expiry.end_visitor(visitor_id)
     assert not visitors.is_known(started.key)
     assert visitors.is_known(other.key)
@@ -328,8 +328,8 @@ def test_a_tournament_goes_a_day_after_it_was_opened_in_a_room_that_is_gone(
     rooms, contests = Rooms(store, now=clock.time), Tournaments(store, now=clock.time)
     code = rooms.create(None).code
     rules = rules_of(steps=20)
-    left, own = contests.create(rules, "", code, 6), contests.create(rules, "", None, 6)
-    contests.enter(left.id, Entrant(0), EntryConfig(agent="q-learning"))
+    of_room, of_operator = contests.create(rules, "", code, 6), contests.create(rules, "", None, 6)
+    contests.enter(of_room.id, Entrant(0), EntryConfig(agent="q-learning"))
     expiry = make_expiry(store, jobs, visitors, clock, rooms)
     rooms.end(code)
     rooms.delete(code)
@@ -340,7 +340,7 @@ def test_a_tournament_goes_a_day_after_it_was_opened_in_a_room_that_is_gone(
     make_expiry(store, jobs, visitors, clock).sweep()
     assert len(Tournaments(store).all()) == 2, "a server that is no demo keeps it"
     expiry.sweep()
-    assert [one.id for one in Tournaments(store).all()] == [own.id]
+    assert [contest.id for contest in Tournaments(store).all()] == [of_operator.id]
 
 
 def test_a_room_that_nobody_has_used_for_a_day_goes_with_its_runs(

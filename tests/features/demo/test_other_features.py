@@ -19,15 +19,15 @@ from tests.jobs.waiting import wait_until
 def test_a_feature_of_another_package_is_asked_again_and_again_whatever_it_raises(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[datetime] = []
+    times: list[datetime] = []
 
     class Diary(Feature):
         name = "diary"
 
         def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> Iterable[str]:
             del delete_runs
-            asked.append(time)
-            if len(asked) == 1:
+            times.append(time)
+            if len(times) == 1:
                 raise RuntimeError("out of order")
             return ["page"]
 
@@ -41,4 +41,4 @@ def test_a_feature_of_another_package_is_asked_again_and_again_whatever_it_raise
         data=tmp_path, token="a-token-for-tests", features=(DemoSettings(demo=True),)
     )
     with running(settings):
-        wait_until(lambda: len(asked) > 3)
+        wait_until(lambda: len(times) > 3)

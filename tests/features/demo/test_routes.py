@@ -66,16 +66,16 @@ def test_a_stranger_trains_and_has_the_rest_of_the_allowance(stranger: Api) -> N
 def test_beyond_the_allowance_it_is_told_what_is_allowed_and_when(stranger: Api) -> None:
     stranger.finished(stranger.start("/trainings", {**WALK, "steps": 800}))
     answer = stranger.call("POST", "/trainings", json={**WALK, "steps": 500})
-    told = refused(answer, 429)
-    assert told.startswith("You have 200 of 1,000 steps an hour left, and this takes 500;")
-    assert "choose fewer, or start it in 60 min." in told
+    problem = refused(answer, 429)
+    assert problem.startswith("You have 200 of 1,000 steps an hour left, and this takes 500;")
+    assert "choose fewer, or start it in 60 min." in problem
     assert 3500 < int(answer.headers["retry-after"]) <= 3600
     stranger.start("/trainings", SHORT)
 
 
 def test_huge_settings_are_refused_by_what_they_cost(stranger: Api) -> None:
-    told = refused(stranger.call("POST", "/trainings", json={**WALK, "steps": 100_000}), 422)
-    assert "up to 1,000 steps at once" in told
+    problem = refused(stranger.call("POST", "/trainings", json={**WALK, "steps": 100_000}), 422)
+    assert "up to 1,000 steps at once" in problem
     lanes = [{"agent": "q-learning", "training": {"steps": 990}}, {"agent": "greedy"}]
     race = {**WALK, "steps": 50, "lanes": lanes}
     assert "this has 1,090" in refused(stranger.call("POST", "/races", json=race), 422)
@@ -84,8 +84,8 @@ def test_huge_settings_are_refused_by_what_they_cost(stranger: Api) -> None:
 
 def test_two_at_once_and_one_that_is_stopped_makes_place(stranger: Api) -> None:
     runs = [stranger.start("/trainings", {**SLOW, "steps": 300}) for _ in range(2)]
-    told = refused(stranger.call("POST", "/trainings", json=SHORT), 429)
-    assert "2 of your runs wait or go on" in told
+    problem = refused(stranger.call("POST", "/trainings", json=SHORT), 429)
+    assert "2 of your runs wait or go on" in problem
     for run in runs:
         path = f"/trainings/{run['id']}/stop"
         assert stranger.call("POST", path, headers=X).status_code == 202

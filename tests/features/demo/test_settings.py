@@ -16,8 +16,10 @@ def test_a_demo_is_stricter_unless_it_is_told_otherwise() -> None:
     assert demo.starts_per_minute < usual.starts_per_minute
     assert demo.max_viewers < usual.max_viewers
     assert demo.quota_mb == 4000
-    given = read_settings({**environ, "HEXAPODS_QUOTA_MB": "90", "HEXAPODS_STARTS_PER_MINUTE": "7"})
-    assert (given.quota_mb, given.starts_per_minute) == (90, 7)
+    changed = read_settings(
+        {**environ, "HEXAPODS_QUOTA_MB": "90", "HEXAPODS_STARTS_PER_MINUTE": "7"}
+    )
+    assert (changed.quota_mb, changed.starts_per_minute) == (90, 7)
     assert not read_settings({"HEXAPODS_DEMO": "0"}).of(DemoSettings).demo
 
 

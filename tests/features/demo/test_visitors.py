@@ -75,16 +75,16 @@ def test_all_runs_of_a_claimed_start_are_given_and_a_restart_keeps_that(
     race = RaceStart(WALK, [LaneStart("q-learning", training=training(steps=5))], 5, 0)
     first = visitors.start("", HOME, race, stored(store), secret)
     clock.pass_time(hours=1)
-    kept = visitors.start(first.key, HOME, training(steps=50), stored(store))
+    second = visitors.start(first.key, HOME, training(steps=50), stored(store))
     other = visitors.start("", HOME, training(steps=50), stored(store))
     assert visitors.claim(other.key, "not-" + secret, first.run.id) == ""
     assert visitors.claim(other.key, secret, first.run.id) == other.key
-    for one in (visitors, make_visitors()):
-        assert len(one.use(other.key).kept) == 3
-        assert one.use(first.key).kept == (kept.run.id,)
-        assert one.owns(other.key, first.run.lane_training_ids[0] or "")
-        assert one.claim("", secret, first.run.id) == ""
-        assert one.claim("", secret, kept.run.id) == first.key
+    for visitors_now in (visitors, make_visitors()):
+        assert len(visitors_now.use(other.key).kept) == 3
+        assert visitors_now.use(first.key).kept == (second.run.id,)
+        assert visitors_now.owns(other.key, first.run.lane_training_ids[0] or "")
+        assert visitors_now.claim("", secret, first.run.id) == ""
+        assert visitors_now.claim("", secret, second.run.id) == first.key
 
 
 def test_the_steps_of_an_hour_come_back_and_a_restart_forgets_none(
@@ -95,11 +95,11 @@ def test_the_steps_of_an_hour_come_back_and_a_restart_forgets_none(
     clock.pass_time(minutes=20)
     visitors.start(key, HOME, training(steps=40), queue)
     assert visitors.use(key).steps == 90
-    for one in (visitors, make_visitors()):
+    for visitors_now in (visitors, make_visitors()):
         with pytest.raises(
             Busy, match=r"10 of 100 steps an hour left, and this takes 20.*40 min"
         ) as it:
-            one.start(key, HOME, training(steps=20), queue)
+            visitors_now.start(key, HOME, training(steps=20), queue)
         assert it.value.retry_after_s == 2400
     clock.pass_time(minutes=40)
     assert make_visitors().start(key, HOME, training(steps=60), queue).key == key
@@ -228,7 +228,7 @@ def test_three_visitors_take_turns_after_the_operator(
     c1 = start(visitors, jobs, training(), address=SCHOOL)
     of_operator = jobs.start(training())
     jobs.stop(first.id)
-    started = [one.run for one in (a1, a2, b1, b2, c1)]
+    started = [visitor_start.run for visitor_start in (a1, a2, b1, b2, c1)]
     ended = [wait_until_ended(store, run) for run in (*started, of_operator)]
     assert {run.state for run in ended} == {"finished"}
     order = [run.id for run in sorted(ended, key=lambda run: str(run.started_at))]

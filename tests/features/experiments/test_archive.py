@@ -162,8 +162,8 @@ def test_report_files_must_match_their_names(source: RunStore) -> None:
 
 
 def test_rewards_of_a_recovery_are_preserved(store: RunStore, tmp_path: Path) -> None:
-    given = {"seeds": 1, "simulator": "kinematic", "gaits": ("left-right-origin",), "steps": (5,)}
-    config = experiment_config("recovery", {**given, "agents": ("q-learning",)})
+    values = {"seeds": 1, "simulator": "kinematic", "gaits": ("left-right-origin",), "steps": (5,)}
+    config = experiment_config("recovery", {**values, "agents": ("q-learning",)})
     trials = list(Plan(config).trials())
     rows = [Outcome(trial.key, run_trial(trial.config), None, 0.1).as_json() for trial in trials]
     run = experiment(RUN_ID, state="stopped", config=config, total=3, done=len(rows), workers=1)

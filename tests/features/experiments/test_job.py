@@ -79,18 +79,18 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
 
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == ("stopped", None)
-    kept = Trials(store.database).get(run.id)
-    assert stopped.done == len(kept) < 25
+    stored = Trials(store.database).get(run.id)
+    assert stopped.done == len(stored) < 25
     result = experiment_result(stopped)
-    assert result.trials == TrialCounts(done=len(kept), total=25, failed=0, set_aside=0)
+    assert result.trials == TrialCounts(done=len(stored), total=25, failed=0, set_aside=0)
     assert result.files[0] == SUMMARY
     for name in result.files:
         assert store.artifact(run.id, name), name
     wait_until(lambda: worker_pids() == before)
 
     resumed = jobs.resume(run.id)
-    assert (resumed.state, resumed.done, resumed.result) == ("queued", len(kept), None)
-    wait_for_more_trials(store, run, len(kept))
+    assert (resumed.state, resumed.done, resumed.result) == ("queued", len(stored), None)
+    wait_for_more_trials(store, run, len(stored))
     os.kill(pid_of(run), signal.SIGKILL)
     killed = wait_until_ended(store, run)
     assert killed.state == "failed"
@@ -102,7 +102,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     assert (finished.state, finished.done, finished.error) == ("finished", 25, None)
     assert stored_results(store, run.id) == tried(config)
     times = {row["key"]: row["compute_s"] for row in Trials(store.database).get(run.id)}
-    assert all(times[row["key"]] == row["compute_s"] for row in kept), "some were repeated"
+    assert all(times[row["key"]] == row["compute_s"] for row in stored), "some were repeated"
     with pytest.raises(Conflict, match="failed or interrupted or paused or stopped"):
         jobs.resume(run.id)
     wait_until(lambda: worker_pids() == before)

@@ -64,7 +64,7 @@ def test_an_added_preset_is_among_the_options() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "error", "message"),
+    ("values", "error", "message"),
     [
         ({"tolerance": 0.1}, UnknownName, "choose one of: seeds, agents, gaits, worlds, steps"),
         ({"worlds": ()}, InvalidInput, "worlds must name at least one"),
@@ -72,10 +72,10 @@ def test_an_added_preset_is_among_the_options() -> None:
     ],
 )
 def test_what_a_preset_does_not_take_is_refused_with_what_is_valid(
-    given: dict[str, Any], error: type[Exception], message: str
+    values: dict[str, Any], error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message):
-        experiment_config("two-worlds", given)
+        experiment_config("two-worlds", values)
 
 
 def test_an_added_preset_is_a_choice_of_the_command(tmp_path: Path) -> None:

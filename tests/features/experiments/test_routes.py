@@ -65,8 +65,8 @@ def test_stored_files_have_a_policy_that_forbids_scripts(swept: dict[str, Any], 
 
 def test_trials_are_returned_as_json_and_csv(swept: dict[str, Any], api: Api) -> None:
     rows = api.get(f"/experiments/{swept['id']}/trials")["trials"]
-    given = {"seeds": 3, "simulator": "kinematic", "gaits": ("left-right-origin",)}
-    config = experiment_config("sweep", {**given, "steps": (40,), "alpha": (0.1, 0.5)})
+    values = {"seeds": 3, "simulator": "kinematic", "gaits": ("left-right-origin",)}
+    config = experiment_config("sweep", {**values, "steps": (40,), "alpha": (0.1, 0.5)})
     plain = json.loads(json.dumps(tried(config)))
     assert {row["key"]: row["result"] for row in rows} == plain
     answer = api.call("GET", f"/experiments/{swept['id']}/trials?format=csv")
@@ -97,8 +97,8 @@ def test_exported_experiment_can_be_imported(swept: dict[str, Any], api: Api) ->
     assert copy["id"] != swept["id"]
     assert {**copy, "id": swept["id"]} == swept
     for path in ("summary", "trials"):
-        there = api.get(f"/experiments/{copy['id']}/{path}")
-        assert there == api.get(f"/experiments/{swept['id']}/{path}")
+        shown = api.get(f"/experiments/{copy['id']}/{path}")
+        assert shown == api.get(f"/experiments/{swept['id']}/{path}")
     assert api.call("DELETE", f"/experiments/{copy['id']}").status_code == 204
     refused(api.call("GET", f"/experiments/{copy['id']}/summary"), 404)
 
@@ -192,7 +192,7 @@ def test_experiment_cannot_be_shown_on_stage(serve: Serve) -> None:
 
 def test_options_describe_every_experiment(api: Api) -> None:
     options = api.get("/options")
-    shown = {one["name"]: one for one in options["experiments"]}
+    shown = {entry["name"]: entry for entry in options["experiments"]}
     assert list(shown)[:5] == ["table1", "figure4", "sweep", "league", "recovery"]
     assert list(shown)[5:] == ["groups", "bodies"]
     assert shown["table1"]["defaults"]["robots"] == ["stiff", "compliant"]
@@ -207,10 +207,10 @@ def test_options_describe_every_experiment(api: Api) -> None:
     assert {"greedy", "q-learning"} & {*shown["recovery"]["agents"]} == {"q-learning"}
     assert {"greedy", "q-learning"} < {*shown["league"]["agents"]}
     assert shown["table1"]["agents"] == []
-    for one in shown.values():
-        assert one["title"]
-        assert one["description"].endswith(".")
-        assert set(one["fields"]) <= set(options["help"])
+    for entry in shown.values():
+        assert entry["title"]
+        assert entry["description"].endswith(".")
+        assert set(entry["fields"]) <= set(options["help"])
 
 
 @pytest.mark.promises

@@ -39,20 +39,20 @@ LEAGUE: dict[str, Any] = {
 
 
 @pytest.mark.promises
-@pytest.mark.parametrize(("name", "given"), [("sweep", SWEEP), ("league", LEAGUE)])
+@pytest.mark.parametrize(("name", "values"), [("sweep", SWEEP), ("league", LEAGUE)])
 def test_a_trial_run_here_has_the_trials_distance(
-    jobs: Jobs, store: RunStore, name: Any, given: dict[str, Any]
+    jobs: Jobs, store: RunStore, name: Any, values: dict[str, Any]
 ) -> None:
-    config = experiment_config(name, given)
+    config = experiment_config(name, values)
     experiment = jobs.start(ExperimentStart(config))
     jobs.stop(experiment.id)
     by_role = {trial.setting.key.rpartition("/")[2]: trial for trial in Plan(config).trials()}
     for trial in by_role.values():
-        made = wait_until_ended(store, jobs.start(trial_start(config, experiment.id, trial.key)))
-        assert made.state == "finished", made.error
-        assert made.notes == f"Trial {trial.key} of experiment {experiment.id}."
-        assert isinstance(made.result, TrainingResult | RaceResult)
-        result = made.result.lanes[0] if isinstance(made.result, RaceResult) else made.result
+        run = wait_until_ended(store, jobs.start(trial_start(config, experiment.id, trial.key)))
+        assert run.state == "finished", run.error
+        assert run.notes == f"Trial {trial.key} of experiment {experiment.id}."
+        assert isinstance(run.result, TrainingResult | RaceResult)
+        result = run.result.lanes[0] if isinstance(run.result, RaceResult) else run.result
         distance_m = getattr(result, "total_distance_m", getattr(result, "distance_m", None))
         assert distance_m == run_trial(trial.config).distances_m[-1], trial.key
 

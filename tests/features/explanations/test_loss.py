@@ -71,10 +71,10 @@ def test_of_a_learner_over_landings_these_are_counted() -> None:
 
 def test_three_sentences_have_the_numbers() -> None:
     agent = learner(made=0.01)
-    told = loss_as_json([step(), step(), step(0.005)], lambda _: agent, practised_steps=10)
-    table, moves, better = told["sentences"]
+    loss = loss_as_json([step(), step(), step(0.005)], lambda _: agent, practised_steps=10)
+    table, moves, better = loss["sentences"]
 
-    assert (told["better"], told["untried"], told["undervalued"]) == (2, 2, 0)
+    assert (loss["better"], loss["untried"], loss["undervalued"]) == (2, 2, 0)
     assert "In 10 steps of practice it had tried 1 of the 1500 moves in its table (0 %)" in table
     assert "1 of the 12 moves in the state that it walked through" in table
     assert "Its 3 steps brought 5.00 mm each on average" in moves
@@ -84,7 +84,7 @@ def test_three_sentences_have_the_numbers() -> None:
 
 
 def test_where_no_move_was_better_it_says_so() -> None:
-    told = loss_as_json([step(0.005)], lambda _: learner(), practised_steps=None)
+    loss = loss_as_json([step(0.005)], lambda _: learner(), practised_steps=None)
 
-    assert told["sentences"][0].startswith("Before its last step it had tried 0 of")
-    assert "In none of its 1 step would another move have brought 1 mm more" in told["sentences"][2]
+    assert loss["sentences"][0].startswith("Before its last step it had tried 0 of")
+    assert "In none of its 1 step would another move have brought 1 mm more" in loss["sentences"][2]

@@ -61,15 +61,15 @@ def test_any_order_of_moments_shows_the_same_learner(
 
 def test_stepping_back_begins_at_the_nearest_snapshot(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rebuilt_practice, "SNAPSHOT_EVERY_S", 0.0)
-    made: list[int] = []
+    calls: list[int] = []
 
     def new() -> RebuiltLearner:
-        made.append(1)
+        calls.append(1)
         return rebuild_learner(config_of("q-learning"))
 
     practice, steps = RebuiltPractice(new), steps_by("q-learning")
     practice.learner_at(80, steps, ())
-    nearest = max(one.step for one in practice._snapshots if one.step <= 60)
+    nearest = max(snapshot.step for snapshot in practice._snapshots if snapshot.step <= 60)
     restored: list[int] = []
     restore: Callable[..., None] = RebuiltLearner.restore
 
@@ -80,10 +80,12 @@ def test_stepping_back_begins_at_the_nearest_snapshot(monkeypatch: pytest.Monkey
     monkeypatch.setattr(RebuiltLearner, "restore", spy)
     practice.learner_at(60, steps, ())
     # How far apart snapshots are depends on their times: there may be one of the next step.
-    next_snapshot = min((one.step for one in practice._snapshots if one.step > 60), default=80)
+    next_snapshot = min(
+        (snapshot.step for snapshot in practice._snapshots if snapshot.step > 60), default=80
+    )
     practice.learner_at(min(61, next_snapshot - 1), steps, ())
 
-    assert len(made) == 2
+    assert len(calls) == 2
     assert restored == [nearest]
 
 
@@ -93,7 +95,7 @@ def test_snapshots_are_thinned_out_to_their_limit(monkeypatch: pytest.MonkeyPatc
     practice, steps = practice_of("q-learning"), steps_by("q-learning")
     practice.learner_at(80, steps, ())
 
-    assert sum(one.size for one in practice._snapshots) <= 30_000
+    assert sum(snapshot.size for snapshot in practice._snapshots) <= 30_000
     assert agent_state(practice.learner_at(30, steps, ()).agent) == states_after("q-learning", 30)
 
 
@@ -132,7 +134,7 @@ def test_an_agent_that_breaks_is_told_as_such(monkeypatch: pytest.MonkeyPatch) -
     practice, steps = practice_of("q-learning"), steps_by("q-learning")
     learner = practice.learner_at(3, steps, ())
 
-    def breaks(*given: object) -> None:
+    def breaks(*arguments: object) -> None:
         raise ZeroDivisionError("no luck")
 
     monkeypatch.setattr(learner.agent, "learn", breaks)

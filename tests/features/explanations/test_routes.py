@@ -19,13 +19,13 @@ def stored_values(api: Api, run_id: str) -> dict[tuple[Any, ...], float]:
 
 def shown_values(table: dict[str, Any]) -> dict[tuple[Any, ...], float]:
     cells = len(table["cells_m"])
-    found = {}
+    values = {}
     for index, row in enumerate(table["values"], table["first"]):
         state = [index // cells**place % cells for place in (2, 1, 0)]
         for column, value in enumerate(row):
             if value is not None:
-                found[*state, *divmod(column, cells)] = value
-    return found
+                values[*state, *divmod(column, cells)] = value
+    return values
 
 
 def explained(api: Api, run_id: str, **query: int) -> dict[str, Any]:
@@ -74,18 +74,21 @@ def test_tables_of_earlier_moments_are_those_before(api: Api, trained: dict[str,
 
 
 def test_a_part_of_the_states_can_be_asked_for(api: Api, trained: dict[str, Any]) -> None:
-    whole, part = table_at(api, trained["id"]), table_at(api, trained["id"], first=120, count=9)
+    whole, some_states = (
+        table_at(api, trained["id"]),
+        table_at(api, trained["id"], first=120, count=9),
+    )
 
-    assert part["values"] == whole["values"][120:]
-    assert part["best"] == whole["best"][120:]
+    assert some_states["values"] == whole["values"][120:]
+    assert some_states["best"] == whole["best"][120:]
 
 
 def test_every_step_of_a_training_explains_the_stored_value(
     api: Api, trained: dict[str, Any]
 ) -> None:
     for step in (1, 2, 50, 51, 99, 100, 3):
-        told = explained(api, trained["id"], step=step)
-        update = told["update"]["direct"]
+        explanation = explained(api, trained["id"], step=step)
+        update = explanation["update"]["direct"]
         terms = [Term(**term) for term in update["terms"]]
         after = shown_values(table_at(api, trained["id"], step=step))
         before = shown_values(table_at(api, trained["id"], step=step - 1))
@@ -94,23 +97,23 @@ def test_every_step_of_a_training_explains_the_stored_value(
         assert update["is_exact"]
         assert evaluate(update["rule"], terms) == update["after"] == after[place]
         assert update["before"] == before[place]
-        assert update["action"] == told["action"]
+        assert update["action"] == explanation["action"]
         assert {p: v for p, v in after.items() if p != place} == {
             p: v for p, v in before.items() if p != place
         }
 
 
 def test_a_choice_is_told_in_words(api: Api, trained: dict[str, Any]) -> None:
-    told = [explained(api, trained["id"], step=step) for step in (1, STEPS)]
-    first, last = (" ".join(one["choice"]["sentences"]) for one in told)
+    explanations = [explained(api, trained["id"], step=step) for step in (1, STEPS)]
+    first, last = (" ".join(explanation["choice"]["sentences"]) for explanation in explanations)
 
     assert "It explores" in first
     assert "by lot: legs" in first
-    assert told[0]["choice"]["draw"] < told[0]["choice"]["epsilon"] == 1
+    assert explanations[0]["choice"]["draw"] < explanations[0]["choice"]["epsilon"] == 1
     assert "It takes what it holds for best" in last
-    assert told[1]["choice"]["epsilon"] == 0
+    assert explanations[1]["choice"]["epsilon"] == 0
     assert "value in the table" in last
-    assert told[1]["update"]["summary"].startswith("It got ")
+    assert explanations[1]["update"]["summary"].startswith("It got ")
 
 
 def test_the_newest_step_is_explained_by_default(api: Api, trained: dict[str, Any]) -> None:
@@ -121,11 +124,11 @@ def test_the_newest_step_is_explained_by_default(api: Api, trained: dict[str, An
 def test_steps_of_other_learners_are_explained(api: Api, agent: str) -> None:
     run = api.finished(api.train(agent=agent, steps=30))
     for step in (30, 12, 13):
-        told = explained(api, run["id"], step=step)
-        assert told["choice"]["sentences"]
-        assert told["update"]["summary"]
-        assert told["update"]["direct"]["is_exact"]
-        assert told["unexplained"] is None
+        explanation = explained(api, run["id"], step=step)
+        assert explanation["choice"]["sentences"]
+        assert explanation["update"]["summary"]
+        assert explanation["update"]["direct"]["is_exact"]
+        assert explanation["unexplained"] is None
 
 
 def test_a_learner_without_a_table_has_none(api: Api) -> None:
@@ -136,7 +139,9 @@ def test_a_learner_without_a_table_has_none(api: Api) -> None:
 
 def test_steps_of_a_continued_training_are_explained(api: Api, trained: dict[str, Any]) -> None:
     run = api.finished(api.train(continue_from=trained["id"], steps=20))
-    tables = [table_at(api, one["id"], **at) for one, at in ((trained, {}), (run, {"step": 0}))]
+    tables = [
+        table_at(api, training["id"], **at) for training, at in ((trained, {}), (run, {"step": 0}))
+    ]
 
     assert tables[0]["values"] == tables[1]["values"]
     assert shown_values(table_at(api, run["id"])) == stored_values(api, run["id"])
@@ -160,8 +165,12 @@ def test_a_training_is_explained_while_it_runs_and_is_changed(api: Api) -> None:
     at = now["changes"][0]["step"]
     before, after = (explained(api, run["id"], step=step) for step in (at, at + 1))
     rates = [
-        next(term["value"] for term in one["update"]["direct"]["terms"] if term["symbol"] == "α")
-        for one in (before, after)
+        next(
+            term["value"]
+            for term in explanation["update"]["direct"]["terms"]
+            if term["symbol"] == "α"
+        )
+        for explanation in (before, after)
     ]
     assert rates == [0.3, 0.5]
     assert after["choice"]["epsilon"] == 0.1
@@ -224,32 +233,32 @@ def test_a_training_without_a_log_says_so(api: Api, trained: dict[str, Any]) -> 
 def test_a_learner_that_loses_is_told_why(api: Api, trained: dict[str, Any]) -> None:
     lanes = [{"agent": "q-learning", "training_id": trained["id"]}, {"agent": "greedy"}]
     race = api.finished(api.race(lanes=[*lanes, {"agent": "linear-model"}]))
-    told = api.get(f"/races/{race['id']}/loss", params={"lane": 0})
-    LossView.model_validate(told)
+    loss = api.get(f"/races/{race['id']}/loss", params={"lane": 0})
+    LossView.model_validate(loss)
     total_m = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
 
-    assert (told["steps"], told["practised_steps"], told["entries"]) == (50, STEPS, 1500)
-    assert 0 < told["tried"] <= STEPS
-    assert told["is_ranked"]
-    assert told["behind_m"] > 0
-    assert told["reward_m"] * 50 == pytest.approx(total_m[0])
-    assert told["best_reward_m"] > told["reward_m"]
-    assert told["better"] == told["untried"] + told["undervalued"] + told["not_chosen"] > 0
-    assert f"tried {told['tried']} of the 1500 moves" in told["sentences"][0]
+    assert (loss["steps"], loss["practised_steps"], loss["entries"]) == (50, STEPS, 1500)
+    assert 0 < loss["tried"] <= STEPS
+    assert loss["is_ranked"]
+    assert loss["behind_m"] > 0
+    assert loss["reward_m"] * 50 == pytest.approx(total_m[0])
+    assert loss["best_reward_m"] > loss["reward_m"]
+    assert loss["better"] == loss["untried"] + loss["undervalued"] + loss["not_chosen"] > 0
+    assert f"tried {loss['tried']} of the 1500 moves" in loss["sentences"][0]
 
     path = f"/races/{race['id']}/loss?lane="
     refused(api.call("GET", f"{path}2&clock=free"), 409, "keeps no table")
     refused(api.call("GET", f"{path}1&clock=free"), 409, "Lane 1, greedy, is not behind")
     refused(api.call("GET", f"{path}3"), 422, "Lane must be from 0 to 2, not 3.")
     refused(api.call("GET", f"/races/{trained['id']}/loss?lane=0"), 404, "")
-    assert api.get(f"/races/{race['id']}/loss", params={"lane": 0}) == told
+    assert api.get(f"/races/{race['id']}/loss", params={"lane": 0}) == loss
 
 
 def test_a_learner_that_practises_in_the_race_is_told_why_it_loses(api: Api) -> None:
     lanes = [{"agent": "sarsa", "keep_learning": True}, {"agent": "greedy"}]
     race = api.finished(api.race(steps=20, lanes=lanes))
-    told = api.get(f"/races/{race['id']}/loss", params={"lane": 0, "clock": "free"})
+    loss = api.get(f"/races/{race['id']}/loss", params={"lane": 0, "clock": "free"})
 
-    assert (told["practised_steps"], told["steps"]) == (0, 20)
-    assert 0 < told["tried"] < 20
-    assert told["sentences"][0].startswith("Before its last step it had tried")
+    assert (loss["practised_steps"], loss["steps"]) == (0, 20)
+    assert 0 < loss["tried"] < 20
+    assert loss["sentences"][0].startswith("Before its last step it had tried")

@@ -55,9 +55,9 @@ def test_an_answer_outlives_the_log_that_it_was_read_from(
     run_id, explanations = stored_training(store, recordings), Explanations(store, recordings)
     built: list[int] = []
 
-    def rebuilt(*given: Any) -> RebuiltLearner:
+    def rebuilt(*arguments: Any) -> RebuiltLearner:
         built.append(1)
-        return rebuild_learner(*given)
+        return rebuild_learner(*arguments)
 
     monkeypatch.setattr(service, "rebuild_learner", rebuilt)
     first = the_log(recordings, run_id)
@@ -104,8 +104,8 @@ def test_a_running_training_is_asked_again_for_the_step_that_it_records_next(
 def test_an_answer_is_of_the_steps_that_a_race_took_now(store: RunStore) -> None:
     parts = StageParts(store)
     run, explanations = parts.finished_race(("greedy",)), Explanations(store, parts.recordings)
-    known = explanations.explain(run.id, 3, 0)
-    assert explanations.explain(run.id, 3, 0) is known
+    answer = explanations.explain(run.id, 3, 0)
+    assert explanations.explain(run.id, 3, 0) is answer
     lanes = parts.recordings.race(run.id)
     assert lanes is not None
     first, second, third, *rest = lanes[0].steps

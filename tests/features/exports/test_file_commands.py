@@ -24,24 +24,28 @@ def data(tmp_path: Path) -> Path:
 
 def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     def write(*arguments: str) -> str:
-        return refusal("runs", "trajectory", *arguments, *here, folder=tmp_path, run=in_process)
+        return refusal(
+            "runs", "trajectory", *arguments, *data_option, folder=tmp_path, run=in_process
+        )
 
-    here = ("--data", str(data))
-    told = output("runs", "trajectory", RACED, "--out", "w.csv", *here, folder=tmp_path)
-    assert (told["id"], told["bytes"]) == (RACED, (tmp_path / "w.csv").stat().st_size)
+    data_option = ("--data", str(data))
+    result = output("runs", "trajectory", RACED, "--out", "w.csv", *data_option, folder=tmp_path)
+    assert (result["id"], result["bytes"]) == (RACED, (tmp_path / "w.csv").stat().st_size)
     head, *rows = (tmp_path / "w.csv").read_text().splitlines()
     assert head.startswith("lane,step,time_s,body_x_m")
     assert {row.split(",")[0] for row in rows} == {"0", "1"}
-    log = output("runs", "mcap", RACED, "--out", "r.mcap", *here, folder=tmp_path, run=in_process)
+    log = output(
+        "runs", "mcap", RACED, "--out", "r.mcap", *data_option, folder=tmp_path, run=in_process
+    )
     assert log["bytes"] == (tmp_path / "r.mcap").stat().st_size
     video = ("--out", "r.gif", "--width", "64", "--height", "64", "--fps", "1")
-    output("runs", "video", RACED, *video, *here, folder=tmp_path, run=in_process)
+    output("runs", "video", RACED, *video, *data_option, folder=tmp_path, run=in_process)
     assert (tmp_path / "r.gif").read_bytes()[:6] == b"GIF89a"
     assert "must end with .csv or .parquet: w.txt" in write(RACED, "--out", "w.txt")
     assert "lane must be from 0 to 1, not 2" in write(RACED, "--lane", "2", "--out", "w.csv")
     assert "no run 'nope'" in write("nope", "--out", "w.csv")
     assert f"{TRAINING} is finished and has no recording" in write(TRAINING, "--out", "w.csv")
-    done = in_process("runs", "page", RACED, "--out", "r.html", *here, folder=tmp_path)
+    done = in_process("runs", "page", RACED, "--out", "r.html", *data_option, folder=tmp_path)
     assert re.fullmatch(rf"Race {RACED} is in r.html \(\d+ kB\).\n", done.stdout)
 
 

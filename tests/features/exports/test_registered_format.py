@@ -84,15 +84,15 @@ def test_a_format_that_is_registered_has_its_route_command_and_menu(tmp_path: Pa
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    report: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
 
-    (status, media_type, text), (refused, _, problem), (other, other_type, _) = found["answers"]
+    (status, media_type, text), (refused, _, problem), (other, other_type, _) = report["answers"]
     assert (status, media_type.partition(";")[0], other) == (200, "text/plain", 200)
     assert text.endswith(": 2 lanes, 2 loops")
     assert refused == 422
     assert "loops must be a whole number from 1 to 9" in problem
     assert other_type.startswith("text/x")
-    assert {"format", "loops"} < {*found["parameters"]}
-    menu = {one["title"]: (one["address"], one["method"]) for one in found["menu"]}
+    assert {"format", "loops"} < {*report["parameters"]}
+    menu = {entry["title"]: (entry["address"], entry["method"]) for entry in report["menu"]}
     assert menu["Dummy"] == ("dummy?format=dum", "GET")
-    assert (found["code"], found["file"].partition(": ")[2]) == (0, "2 lanes, 3 loops")
+    assert (report["code"], report["file"].partition(": ")[2]) == (0, "2 lanes, 3 loops")

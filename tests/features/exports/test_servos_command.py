@@ -33,11 +33,11 @@ def servos(*arguments: str, folder: Path) -> str:
 def test_a_walk_is_written_in_each_form(folder: Path) -> None:
     for ending in ("csv", "json", "h"):
         out = ("--out", f"w.{ending}", "--data", "data")
-        told = output("runs", "servos", RACED, *MAP, *out, folder=folder, run=in_process)
-        assert told["bytes"] == (folder / f"w.{ending}").stat().st_size
-        assert (told["lane"], told["steps"]) == (0, [1, 8])
+        result = output("runs", "servos", RACED, *MAP, *out, folder=folder, run=in_process)
+        assert result["bytes"] == (folder / f"w.{ending}").stat().st_size
+        assert (result["lane"], result["steps"]) == (0, [1, 8])
     assert (folder / "w.csv").read_text().startswith("time_s,leg1_coxa_us,leg1_femur_us")
-    assert len((folder / "w.csv").read_text().splitlines()) == told["frames"] + 1
+    assert len((folder / "w.csv").read_text().splitlines()) == result["frames"] + 1
     assert json.loads((folder / "w.json").read_text())["joint_names"][0] == "leg1_coxa"
     assert "PROGMEM" in (folder / "w.h").read_text()
 
@@ -55,20 +55,23 @@ def test_servos_that_cannot_follow_are_named_and_the_walk_is_slowed_down(folder:
     assert "Slowed down: it takes " in slowly
     assert "cannot" not in slowly
     out = ("--lane", "1", "--slow-down", "--out", "w.csv", "--data", "data")
-    told = output("runs", "servos", RACED, *MAP, *out, folder=folder, run=in_process)
-    assert told["slowed"] == told["slow_enough"] > 1
-    assert told["too_slow"] == []
+    result = output("runs", "servos", RACED, *MAP, *out, folder=folder, run=in_process)
+    assert result["slowed"] == result["slow_enough"] > 1
+    assert result["too_slow"] == []
 
 
 def test_servos_that_can_follow_or_whose_speed_is_not_known_are_told_so(folder: Path) -> None:
-    own = "{board: 9, channel: 9, us_at_zero: 1500, us_per_rad: 400, speed_deg_s: 9000}"
-    for text, told in (
+    fast_servo = "{board: 9, channel: 9, us_at_zero: 1500, us_per_rad: 400, speed_deg_s: 9000}"
+    for text, sentence in (
         (map_text("speed_deg_s: 9000"), "The servos can follow at 70 % of the no-load speed; the"),
         (map_text(), "The map has no speed_deg_s: whether the servos can follow is not known."),
-        (map_text(leg1_coxa=own), "leg6_tibia the map has no speed_deg_s: they are not checked."),
+        (
+            map_text(leg1_coxa=fast_servo),
+            "leg6_tibia the map has no speed_deg_s: they are not checked.",
+        ),
     ):
         (folder / "mine.yaml").write_text(text)
-        assert told in servos(*MAP, "--out", "w.csv", folder=folder)
+        assert sentence in servos(*MAP, "--out", "w.csv", folder=folder)
 
 
 def test_what_is_wrong_is_refused_and_nothing_is_written(folder: Path) -> None:

@@ -66,7 +66,7 @@ def test_gait_of_a_part_of_a_race(api: Api, raced: dict[str, Any]) -> None:
 def test_gait_of_a_training_is_of_its_practice_or_its_newest_evaluation(
     api: Api, trained: dict[str, Any]
 ) -> None:
-    practice, evaluation = (gait(api, trained, part=part) for part in ("practice", "evaluation"))
+    practice, evaluation = (gait(api, trained, part=kind) for kind in ("practice", "evaluation"))
 
     assert [practice.part, evaluation.part] == ["practice", "evaluation"]
     assert practice.lanes[0].recorded_to_s == pytest.approx(100 * 0.32)
@@ -100,4 +100,6 @@ def test_what_was_not_recorded_has_no_gait(api: Api) -> None:
     refused(api.call("GET", "/runs/nothing/gait"), 404, "nothing")
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 10_000_000}}])
     refused(api.call("GET", f"/runs/{queued['id']}/gait"), 409, "has no recording (yet)")
-    api.stop(queued, *(api.get(f"/trainings/{one}") for one in queued["waiting_for"]))
+    api.stop(
+        queued, *(api.get(f"/trainings/{training_id}") for training_id in queued["waiting_for"])
+    )

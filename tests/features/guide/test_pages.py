@@ -12,7 +12,7 @@ def test_each_page_is_shown_with_its_title_and_links_to_the_others(
     shared: Callable[..., Api],
 ) -> None:
     client = shared().client
-    for name in (one for _, names in CONTENTS for one in names):
+    for name in (page_name for _, names in CONTENTS for page_name in names):
         page = client.get(f"/guide/{name}")
         assert page.status_code == 200
         title = (assets.docs_dir() / f"{name}.md").read_text("utf-8").partition("\n")[0][2:]
@@ -24,7 +24,7 @@ def test_links_lead_to_pages_of_the_server_or_elsewhere_and_to_no_file_that_it_l
     shared: Callable[..., Api],
 ) -> None:
     client = shared().client
-    for name in (one for _, names in CONTENTS for one in names):
+    for name in (page_name for _, names in CONTENTS for page_name in names):
         main = client.get(f"/guide/{name}").text.partition("<main>")[2]
         assert [
             href
@@ -35,11 +35,11 @@ def test_links_lead_to_pages_of_the_server_or_elsewhere_and_to_no_file_that_it_l
 
 def test_links_to_a_part_of_a_page_find_it(shared: Callable[..., Api]) -> None:
     client = shared().client
-    for name in (one for _, names in CONTENTS for one in names):
-        for other, part in re.findall(
+    for name in (page_name for _, names in CONTENTS for page_name in names):
+        for other, anchor in re.findall(
             r'href="guide/([\w-]+)#([\w-]+)"', client.get(f"/guide/{name}").text
         ):
-            assert f'id="{part}"' in client.get(f"/guide/{other}").text, (name, other, part)
+            assert f'id="{anchor}"' in client.get(f"/guide/{other}").text, (name, other, anchor)
 
 
 def test_an_unknown_page_is_refused_with_the_pages_that_there_are(

@@ -13,8 +13,8 @@ def test_it_is_set_and_told_with_the_stage(api: Api) -> None:
     assert api.get("/stage")["presentation"] == START
     shown = {**START, "card": 3, "code": "small"}
     assert api.call("PUT", "/stage", json={"presentation": shown}).json()["presentation"] == shown
-    held = api.call("PUT", "/stage", json={"playing": False}).json()
-    assert (held["presentation"], held["playing"]) == (shown, False)
+    stage = api.call("PUT", "/stage", json={"playing": False}).json()
+    assert (stage["presentation"], stage["playing"]) == (shown, False)
     api.call("PUT", "/stage", json={"playing": True, "presentation": {}})
     assert api.get("/stage")["presentation"] == START
 

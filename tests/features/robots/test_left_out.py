@@ -33,8 +33,8 @@ def test_a_stored_robot_is_offered_previewed_and_trained(tmp_path: Path, rex_id:
         assert options["robots"][-1]["title"] == "Rex"
         assert "leg_fields" not in options
         walk = {**WALK, "gait": "trot", "robot": {"id": rex_id}}
-        known = api.call("POST", "/robots/preview", json={"gait": "trot", "robot": walk["robot"]})
-        assert known.json()["tips"] is False
+        preview = api.call("POST", "/robots/preview", json={"gait": "trot", "robot": walk["robot"]})
+        assert preview.json()["tips"] is False
         run = api.finished(api.train(**walk))
         assert run["config"]["robot"] == {"id": rex_id, "name": "Rex"}
         refused(api.call("POST", "/robots", json={"robot": BODY}), 404)
@@ -44,8 +44,8 @@ def test_a_stored_robot_is_offered_previewed_and_trained(tmp_path: Path, rex_id:
 
 def test_commands_take_a_stored_robot_by_its_name(tmp_path: Path, rex_id: str) -> None:
     run = partial(in_process, HEXAPODS_WITHOUT="robots")
-    told = refusal("robots", "list", folder=tmp_path, run=run)
-    assert "robots is a command of the feature robots, which HEXAPODS_WITHOUT leaves out" in told
+    error = refusal("robots", "list", folder=tmp_path, run=run)
+    assert "robots is a command of the feature robots, which HEXAPODS_WITHOUT leaves out" in error
     walk = ("--robot", "rex", "--gait", "trot", "--simulator", "kinematic", "--steps", "3")
     trained = output("train", *walk, folder=tmp_path, run=run)
     assert trained["config"]["robot"]["id"] == rex_id

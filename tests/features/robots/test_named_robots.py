@@ -26,8 +26,8 @@ def test_a_robot_that_a_feature_names_is_kept_where_that_is_left_out(
         answer = api.call("DELETE", f"/robots/{robot_id}")
         refused(answer, 409, "tournament uses Rex", "hide it instead")
     left_out = {"HEXAPODS_WITHOUT": ",".join(without)}
-    told = refusal("robots", "delete", "Rex", folder=tmp_path, run=in_process, **left_out)
-    assert "a tournament uses Rex" in told
+    error = refusal("robots", "delete", "Rex", folder=tmp_path, run=in_process, **left_out)
+    assert "a tournament uses Rex" in error
 
 
 def test_a_table_that_is_missing_names_no_robot(tmp_path: Path) -> None:

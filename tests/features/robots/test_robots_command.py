@@ -31,23 +31,23 @@ def test_a_robot_that_tips_is_told_so_and_what_would_stand(tmp_path: Path) -> No
 
 def test_a_robot_is_shown_with_the_gait_that_suits_it(tmp_path: Path) -> None:
     shown = in_process("robots", "show", "starfish", "--json", folder=tmp_path)
-    known = json.loads(shown.stdout)
+    preview = json.loads(shown.stdout)
 
-    assert known["gait"]["groups"] == [[1, 3], [2, 5], [4]]
-    assert known["tips"] is False
-    assert known["states"] == 125
+    assert preview["gait"]["groups"] == [[1, 3], [2, 5], [4]]
+    assert preview["tips"] is False
+    assert preview["states"] == 125
 
 
 def test_a_gait_that_makes_no_sense_is_refused(tmp_path: Path) -> None:
-    told = refusal("robots", "show", "dog", "--gait", "tripod", folder=tmp_path)
+    error = refusal("robots", "show", "dog", "--gait", "tripod", folder=tmp_path)
 
-    assert "it needs six legs, this robot has 4" in told
+    assert "it needs six legs, this robot has 4" in error
 
 
 def test_a_robot_is_exported_as_a_model_for_mujoco(tmp_path: Path) -> None:
     out = ("--out", "dog.xml")
-    told = output("robots", "export", "dog", *out, folder=tmp_path, run=in_process)
-    assert told == {
+    result = output("robots", "export", "dog", *out, folder=tmp_path, run=in_process)
+    assert result == {
         "robot": "dog",
         "file": "dog.xml",
         "bytes": (tmp_path / "dog.xml").stat().st_size,

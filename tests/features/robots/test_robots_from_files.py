@@ -48,7 +48,7 @@ def test_a_file_is_stored_with_what_was_guessed(api: Api, spot: dict[str, Any]) 
     assert whole["found"]["feet"]
     assert whole["found"]["file_format"] == "mjcf"
     assert whole["preview"]["largest_side_m"] > 0
-    option = next(one for one in api.get("/options")["robots"] if one["id"] == spot["id"])
+    option = next(entry for entry in api.get("/options")["robots"] if entry["id"] == spot["id"])
     assert option["body"] is None
     assert option["grid_side_m"] == pytest.approx(0.06, abs=0.02)
     assert option["joints"][0] == ["hip", "thigh", "calf"]
@@ -90,7 +90,7 @@ def test_it_is_corrected_and_has_another_id(api: Api, spot: dict[str, Any]) -> N
     changed = answer.json()
     assert (changed["name"], changed["choices"]["forward"]) == ("Spot", "-x")
     assert changed["id"] != spot["id"]
-    assert [one["id"] for one in api.get("/robots?hidden=true")["items"]] == [changed["id"]]
+    assert [entry["id"] for entry in api.get("/robots?hidden=true")["items"]] == [changed["id"]]
     assert api.get(f"/robots/{changed['id']}")["robot"]["servo_torque_nm"] == 12
     again = api.call("PATCH", f"/robots/{changed['id']}", json={"choices": {}, "name": "Rover"})
     assert (again.json()["id"], again.json()["name"]) == (spot["id"], "Rover")
@@ -124,7 +124,7 @@ def test_a_wrong_choice_changes_nothing(api: Api, spot: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "word"),
+    ("content", "word"),
     [
         ("<mujoco/>", "leg"),
         ("<robot name='x'><link name='a'/></robot>", "leg"),
@@ -135,9 +135,9 @@ def test_a_wrong_choice_changes_nothing(api: Api, spot: dict[str, Any]) -> None:
     ],
 )
 def test_what_is_no_robot_is_refused_and_nothing_kept(
-    api: Api, given: str | bytes, word: str
+    api: Api, content: str | bytes, word: str
 ) -> None:
-    refused(send(api, given, "Bad", "bad.xml"), 422, word)
+    refused(send(api, content, "Bad", "bad.xml"), 422, word)
     assert api.get("/robots?hidden=true")["items"] == []
 
 

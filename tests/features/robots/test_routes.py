@@ -31,10 +31,10 @@ def store(api: Api, name: str | None = None, **body: Any) -> Any:
 def rex(api: Api) -> Iterator[dict[str, Any]]:
     answer = store(api, "Rex")
     assert answer.status_code == 201, answer.text
-    made: dict[str, Any] = answer.json()
-    assert answer.headers["location"] == f"/api/v1/robots/{made['id']}"
-    yield made
-    api.call("DELETE", f"/robots/{made['id']}")
+    stored: dict[str, Any] = answer.json()
+    assert answer.headers["location"] == f"/api/v1/robots/{stored['id']}"
+    yield stored
+    api.call("DELETE", f"/robots/{stored['id']}")
 
 
 def test_a_stored_robot_has_its_legs_its_groups_and_its_gait(api: Api, rex: dict[str, Any]) -> None:
@@ -97,8 +97,8 @@ def test_it_is_chosen_by_its_id_alone_or_changed(api: Api, rex: dict[str, Any]) 
     assert same["result"]["lanes"][0]["trained_robot"] is None
     answer = api.call("DELETE", f"/robots/{rex['id']}")
     assert refused(answer, 409, "3 runs use Rex", "hide it instead")["state"] == "used"
-    for one in (run, race, same):
-        api.call("DELETE", f"/{one['kind']}s/{one['id']}")
+    for user in (run, race, same):
+        api.call("DELETE", f"/{user['kind']}s/{user['id']}")
     assert api.call("DELETE", f"/robots/{rex['id']}").status_code == 204
     refused(api.call("GET", f"/robots/{rex['id']}"), 404, "no robot")
     refused(api.call("POST", "/trainings", json={**walk, "robot": {"id": rex["id"]}}), 422)
@@ -110,20 +110,20 @@ def _trained(run: dict[str, Any]) -> list[dict[str, Any]]:
 
 def test_an_unknown_id_is_refused_with_what_to_do(api: Api, rex: dict[str, Any]) -> None:
     body = {**WALK, "gait": "trot", "robot": {"id": "0" * 16, "name": "Fido"}}
-    told = refused(api.call("POST", "/trainings", json=body), 422)["detail"]
-    assert "(Fido); import its document" in told
-    assert f"Rex ({rex['id']})" in told
+    problem = refused(api.call("POST", "/trainings", json=body), 422)["detail"]
+    assert "(Fido); import its document" in problem
+    assert f"Rex ({rex['id']})" in problem
 
 
 def test_it_is_renamed_hidden_and_given_another_gait(api: Api, rex: dict[str, Any]) -> None:
     path = f"/robots/{rex['id']}"
-    own = {"right_leg": 1, "left_leg": 2, "groups": [[1, 3], [2], [4]]}
-    changed = api.call("PATCH", path, json={"name": "Max", "hidden": True, "gait": own}).json()
+    gait = {"right_leg": 1, "left_leg": 2, "groups": [[1, 3], [2], [4]]}
+    changed = api.call("PATCH", path, json={"name": "Max", "hidden": True, "gait": gait}).json()
     assert (changed["id"], changed["name"], changed["hidden"]) == (rex["id"], "Max", True)
     assert changed["groups"] == [[1, 3], [2], [4]]
     assert api.get("/robots")["items"] == []
     assert api.get("/robots?hidden=true")["items"] == [changed]
-    option = next(one for one in api.get("/options")["robots"] if one["id"] == rex["id"])
+    option = next(entry for entry in api.get("/options")["robots"] if entry["id"] == rex["id"])
     assert (option["title"], option["hidden"], option["gait"]) == ("Max", True, changed["gait"])
     assert store(api).json()["hidden"] is False
     refused(api.call("PATCH", path, json={"name": "stiff"}), 409, "choose another name")
@@ -137,7 +137,7 @@ def test_options_list_stored_robots_beside_those_that_are_built_in(
     api: Api, rex: dict[str, Any]
 ) -> None:
     options = api.get("/options")["robots"]
-    assert {one["id"] for one in options[:-1]} == {None}
+    assert {entry["id"] for entry in options[:-1]} == {None}
     option = options[-1]
     assert (option["id"], option["name"], option["title"]) == (rex["id"], rex["id"], "Rex")
     assert option["robot"] == {"id": rex["id"], "name": "Rex"}
@@ -147,7 +147,7 @@ def test_options_list_stored_robots_beside_those_that_are_built_in(
 
 
 @pytest.mark.parametrize(
-    ("given", "word"),
+    ("content", "word"),
     [
         (b"", "empty"),
         (b"{", "JSON"),
@@ -166,8 +166,8 @@ def test_options_list_stored_robots_beside_those_that_are_built_in(
         (b'{"format":"hexapods-robot-2","robot":{}}', "has format 'hexapods-robot-2'"),
     ],
 )
-def test_what_is_no_robot_is_refused_and_nothing_kept(api: Api, given: bytes, word: str) -> None:
-    refused(api.call("POST", "/robots", content=given), 422, word)
+def test_what_is_no_robot_is_refused_and_nothing_kept(api: Api, content: bytes, word: str) -> None:
+    refused(api.call("POST", "/robots", content=content), 422, word)
     assert api.get("/robots?hidden=true")["items"] == []
 
 
@@ -184,8 +184,8 @@ def test_a_name_is_taken_once_and_made_up_if_none_is_given(api: Api, rex: dict[s
     first = store(api, robot=other).json()
     second = store(api, robot={**BODY, "femur_m": 0.0932}).json()
     assert (first["name"], second["name"]) == ("Robot", "Robot 2")
-    for one in (first, second):
-        assert api.call("DELETE", f"/robots/{one['id']}").status_code == 204
+    for stored in (first, second):
+        assert api.call("DELETE", f"/robots/{stored['id']}").status_code == 204
 
 
 def test_a_file_that_is_too_large_is_refused(api: Api) -> None:
@@ -211,10 +211,10 @@ def test_spectators_read_and_do_not_write(serve: Callable[..., Api]) -> None:
     operator = {"headers": {"Authorization": f"Bearer {TOKEN}"}}
     body = json.dumps({"robot": BODY})
     refused(api.call("POST", "/robots", content=body), 401)
-    made = api.call("POST", "/robots", content=body, **operator).json()
-    path = f"/robots/{made['id']}"
-    assert api.get("/robots")["items"] == [made]
-    assert api.get(path)["id"] == made["id"]
+    stored = api.call("POST", "/robots", content=body, **operator).json()
+    path = f"/robots/{stored['id']}"
+    assert api.get("/robots")["items"] == [stored]
+    assert api.get(path)["id"] == stored["id"]
     assert api.call("GET", f"{path}/file").status_code == 200
     refused(api.call("PATCH", path, json={"hidden": True}), 401)
     refused(api.call("DELETE", path), 401)
@@ -230,7 +230,7 @@ def test_the_archive_of_a_run_brings_its_robot_to_another_server(
     other = serve()
     answer = other.call("POST", "/import", content=data)
     assert answer.status_code == 201, answer.text
-    assert [one["id"] for one in other.get("/robots")["items"]] == [rex["id"]]
+    assert [entry["id"] for entry in other.get("/robots")["items"]] == [rex["id"]]
     api.call("DELETE", f"/trainings/{run['id']}")
 
 
@@ -244,8 +244,8 @@ def test_the_code_of_a_run_makes_its_robot_known_first(
     assert stored == f"hexapods robots import {file} --name Rex"
     assert rex["id"] in trained
     (tmp_path / file).write_bytes(api.call("GET", f"/robots/{rex['id']}/file").content)
-    told = io.StringIO()
-    with contextlib.chdir(tmp_path), contextlib.redirect_stdout(told):
+    output = io.StringIO()
+    with contextlib.chdir(tmp_path), contextlib.redirect_stdout(output):
         exec(compile(code["python"], "the program", "exec"), {"__name__": "__main__"})
-    assert run["result"]["q_table_sha256"] in told.getvalue()
+    assert run["result"]["q_table_sha256"] in output.getvalue()
     api.call("DELETE", f"/trainings/{run['id']}")

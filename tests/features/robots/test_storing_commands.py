@@ -23,29 +23,33 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def told(folder: Path, *arguments: str) -> Any:
+def robots_json(folder: Path, *arguments: str) -> Any:
     data = ("--data", str(folder / "data"))
     return output("robots", *arguments, *data, folder=folder, run=in_process)
 
 
 def names(folder: Path, *arguments: str) -> list[str]:
-    return [one["name"] for one in told(folder, "list", *arguments) if one["id"] is not None]
+    return [
+        entry["name"]
+        for entry in robots_json(folder, "list", *arguments)
+        if entry["id"] is not None
+    ]
 
 
 def test_a_robot_is_imported_shown_hidden_renamed_and_deleted(folder: Path) -> None:
-    made = told(folder, "import", "rex.json", "--name", "Rex")
-    assert (made["id"], made["name"]) == (ID, "Rex")
-    assert told(folder, "import", "rex.json", "--name", "Max")["name"] == "Rex"
+    imported = robots_json(folder, "import", "rex.json", "--name", "Rex")
+    assert (imported["id"], imported["name"]) == (ID, "Rex")
+    assert robots_json(folder, "import", "rex.json", "--name", "Max")["name"] == "Rex"
     assert names(folder) == ["Rex"]
-    assert told(folder, "show", "rex")["states"] == 25
-    assert told(folder, "show", ID, "--gait", "one-by-one")["states"] == 625
-    told(folder, "hide", "Rex")
+    assert robots_json(folder, "show", "rex")["states"] == 25
+    assert robots_json(folder, "show", ID, "--gait", "one-by-one")["states"] == 625
+    robots_json(folder, "hide", "Rex")
     assert (names(folder), names(folder, "--hidden")) == ([], ["Rex"])
-    told(folder, "hide", "Rex", "--undo")
-    told(folder, "rename", "Rex", "--name", "Max")
-    told(folder, "export", "Max", "--out", "max.json")
+    robots_json(folder, "hide", "Rex", "--undo")
+    robots_json(folder, "rename", "Rex", "--name", "Max")
+    robots_json(folder, "export", "Max", "--out", "max.json")
     assert (folder / "max.json").read_bytes() == (folder / "rex.json").read_bytes()
-    assert told(folder, "delete", "max") == {"deleted": ID}
+    assert robots_json(folder, "delete", "max") == {"deleted": ID}
     assert names(folder, "--hidden") == []
 
 
@@ -58,7 +62,7 @@ def test_what_cannot_be_is_refused(folder: Path) -> None:
     (folder / "bad.json").write_text('{"format":"hexapods-robot-1"}')
     assert "is damaged" in refused("import", "bad.json")
     assert "unknown stored robot 'cat'; choose one of: none yet" in refused("delete", "cat")
-    told(folder, "import", "rex.json", "--name", "Rex")
+    robots_json(folder, "import", "rex.json", "--name", "Rex")
     assert "unknown stored robot 'cat'; choose one of: Rex" in refused("hide", "cat")
     assert "unknown robot 'cat'; choose one of: stiff" in refused("show", "cat")
     assert "Rex" in refused("show", "cat")
@@ -67,7 +71,7 @@ def test_what_cannot_be_is_refused(folder: Path) -> None:
 
 def test_it_walks_by_name_and_its_table_knows_it(folder: Path) -> None:
     data = {"HEXAPODS_DATA": str(folder / "data")}
-    told(folder, "import", "rex.json", "--name", "Rex")
+    robots_json(folder, "import", "rex.json", "--name", "Rex")
 
     def run(*arguments: str) -> Any:
         done = in_process(*arguments, "--json", folder=folder, **data)
@@ -91,12 +95,12 @@ def test_it_walks_by_name_and_its_table_knows_it(folder: Path) -> None:
 def test_a_running_server_is_asked(folder: Path) -> None:
     served = Served(folder / "data")
     try:
-        assert told(folder, "import", "rex.json")["name"] == "rex"
+        assert robots_json(folder, "import", "rex.json")["name"] == "rex"
         assert names(folder) == ["rex"]
-        told(folder, "rename", "rex", "--name", "Rex")
-        told(folder, "hide", "Rex")
+        robots_json(folder, "rename", "rex", "--name", "Rex")
+        robots_json(folder, "hide", "Rex")
         assert (names(folder), names(folder, "--hidden")) == ([], ["Rex"])
-        assert told(folder, "delete", ID) == {"deleted": ID}
+        assert robots_json(folder, "delete", ID) == {"deleted": ID}
         assert names(folder, "--hidden") == []
     finally:
         served.end()
@@ -109,10 +113,10 @@ def test_a_robot_from_a_file_is_imported_with_what_was_guessed(folder: Path) -> 
     assert said.returncode == 0, said.stderr
     assert "is robot spot (" in said.stdout
     assert "Guessed: " in said.stdout
-    assert told(folder, "show", "spot")["states"] == 25
-    told(folder, "export", "spot", "--out", "out.xml")
-    told(folder, "export", "spot", "--out", "out.json")
-    told(folder, "delete", "spot")
-    assert told(folder, "import", "out.json", "--name", "Spot")["name"] == "Spot"
+    assert robots_json(folder, "show", "spot")["states"] == 25
+    robots_json(folder, "export", "spot", "--out", "out.xml")
+    robots_json(folder, "export", "spot", "--out", "out.json")
+    robots_json(folder, "delete", "spot")
+    assert robots_json(folder, "import", "out.json", "--name", "Spot")["name"] == "Spot"
     refused = refusal("robots", "import", "no.xml", *data, folder=folder, run=in_process)
     assert "cannot read no.xml" in refused

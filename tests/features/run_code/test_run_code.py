@@ -50,9 +50,9 @@ def results_of_program(text: str, folder: Path) -> list[dict[str, Any]]:
     names: dict[str, Any] = {"__name__": "__main__"}
     with contextlib.chdir(folder), contextlib.redirect_stdout(out):
         exec(compile(text, "the program", "exec"), names)
-    made = [made for made in names.values() if isinstance(made, hx.Training | hx.Race)]
-    assert out.getvalue().splitlines() == [repr(run.result) for run in made]
-    return [asdict(run.result) for run in made if run.result is not None]
+    results = [value for value in names.values() if isinstance(value, hx.Training | hx.Race)]
+    assert out.getvalue().splitlines() == [repr(run.result) for run in results]
+    return [asdict(run.result) for run in results if run.result is not None]
 
 
 def distances(result: dict[str, Any]) -> list[float]:
@@ -86,9 +86,9 @@ def test_a_race_and_its_practice_are_made_again_by_commands_and_by_the_program(
             },
         ],
     )
-    made = api.finished(race)
-    training = api.get(f"/trainings/{made['config']['lanes'][0]['training_id']}")
-    shown = code(made)
+    finished = api.finished(race)
+    training = api.get(f"/trainings/{finished['config']['lanes'][0]['training_id']}")
+    shown = code(finished)
     for results in (
         results_of_commands(shown["command"], tmp_path),
         results_of_program(shown["python"], tmp_path),
@@ -96,7 +96,7 @@ def test_a_race_and_its_practice_are_made_again_by_commands_and_by_the_program(
         practised, raced = results
         assert practised["q_table_sha256"] == training["result"]["q_table_sha256"]
         assert practised["distance_m"] == training["result"]["distance_m"]
-        assert distances(raced) == distances(made["result"])
+        assert distances(raced) == distances(finished["result"])
     assert "--depth" not in shown["command"]
     assert "--disturb limp:legs=1,4:at=2" in shown["command"]
 
@@ -113,7 +113,7 @@ def test_a_continued_training_begins_with_the_one_before(
         results_of_commands(shown["command"], tmp_path),
         results_of_program(shown["python"], tmp_path),
     ):
-        assert [one["q_table_sha256"] for one in results] == [
+        assert [result["q_table_sha256"] for result in results] == [
             run["result"]["q_table_sha256"] for run in (first, second)
         ]
     api.call("DELETE", f"/runs?id={first['id']}")
@@ -133,16 +133,16 @@ def test_what_changed_while_it_ran_changes_in_the_program_too(
     limp = {"kind": "limp", "legs": [2]}
     assert api.call("POST", f"/trainings/{run['id']}/disturbances", json=limp).status_code == 202
     api.call("PATCH", f"/trainings/{run['id']}", json={"pace": "max"})
-    made = api.finished(run)
-    assert {name for change in made["changes"] for name in change} == {
+    finished = api.finished(run)
+    assert {name for change in finished["changes"] for name in change} == {
         "step",
         "settings",
         "disturbance",
         "pace",
     }
-    shown = code(made)
+    shown = code(finished)
     [result] = results_of_program(shown["python"], tmp_path)
-    assert result == made["result"]
+    assert result == finished["result"]
     assert "# While it ran, alpha changed" in shown["command"]
 
 
@@ -182,7 +182,7 @@ def test_a_run_is_started_again_with_the_same_outcome(api: Api) -> None:
     assert again["config"] == race["config"]
     assert distances(again["result"]) == distances(race["result"])
     refused(api.call("POST", "/runs/nothing/again"), 404, "nothing")
-    [training_id] = [i for i in (one["training_id"] for one in race["config"]["lanes"]) if i]
+    [training_id] = [i for i in (lane["training_id"] for lane in race["config"]["lanes"]) if i]
     api.call("DELETE", f"/runs?id={training_id}")
     refused(api.call("POST", f"/runs/{race['id']}/again"), 422, training_id)
 
@@ -191,13 +191,15 @@ def test_a_long_row_of_trainings_begins_with_a_table() -> None:
     began = datetime.now(UTC)
 
     def continued(run_id: str, continued_from: str | None) -> Run:
-        given = {"started_at": began, "continued_from": continued_from}
-        return training(run_id, state="finished", **given)
+        fields = {"started_at": began, "continued_from": continued_from}
+        return training(run_id, state="finished", **fields)
 
     with temporary_store() as store:
         ids = [f"{number:04}" for number in range(600)]
         before = [None, *ids]
-        store.create(*(continued(*one) for one in zip(ids, before, strict=False)))
+        store.create(
+            *(continued(*run_and_parent) for run_and_parent in zip(ids, before, strict=False))
+        )
         store.create(continued("a", "b"), continued("b", "a"))
         lines = commands_of(run_code(store.get(ids[-1]), store, "http://x/").command)
         commands_of(run_code(store.get("a"), store, "http://x/").command)

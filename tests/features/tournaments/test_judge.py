@@ -68,10 +68,10 @@ def test_what_is_judged_is_what_the_library_judges(store: RunStore) -> None:
         all_judged(tournament)
         tournaments.end(tournament.id)
         until(lambda: tournament.state == "ended", lambda: tournament.state)
-    for one in tournament.listed:
-        expected = [judge(QUICK, one.entry, draw) for draw in tournament.draws]
-        assert list(one.in_order()) == expected
-    judged = {one.number: one.in_order() for one in tournament.listed}
+    for entry in tournament.listed:
+        expected = [judge(QUICK, entry.entry, draw) for draw in tournament.draws]
+        assert list(entry.in_order()) == expected
+    judged = {entry.number: entry.in_order() for entry in tournament.listed}
     assert list(tournament.standings) == standings_of(judged)
     assert {"standings", "versions", "machine", "robots"} == set(tournament.outcome)
     assert Tournaments(store).get(tournament.id) == tournament
@@ -117,8 +117,8 @@ def test_a_draw_that_takes_too_long_has_failed(store: RunStore) -> None:
     with judging(tournaments, limit_s=0.2):
         until(lambda: len(tournament.entries[2].judgements) == 5, lambda: tournament.progress)
     judged = tournament.entries[2].in_order()
-    assert {one.failure for one in judged} == {"It took over 0.2 s of processor time."}
-    assert {one.distance_m for one in judged} == {0.0}
+    assert {judgement.failure for judgement in judged} == {"It took over 0.2 s of processor time."}
+    assert {judgement.distance_m for judgement in judged} == {0.0}
 
 
 def test_a_draw_has_more_time_where_searches_may_simulate_more() -> None:
@@ -159,7 +159,7 @@ def test_the_judge_stops_at_once_and_goes_on_later(store: RunStore) -> None:
     with judging(restarted):
         all_judged(again)
     expected = {
-        one.number: tuple(judge(QUICK, one.entry, draw) for draw in again.draws)
-        for one in again.listed
+        entry.number: tuple(judge(QUICK, entry.entry, draw) for draw in again.draws)
+        for entry in again.listed
     }
     assert list(again.standings) == standings_of(expected)

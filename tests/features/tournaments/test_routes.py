@@ -51,8 +51,8 @@ class Contest(Class):
 
     def open(self, room: str | None = None, **options: Any) -> dict[str, Any]:
         """Open a tournament, after the end of those before."""
-        for one in self.teacher.get("/tournaments")["items"]:
-            self.teacher.call("DELETE", f"/tournaments/{one['id']}")
+        for former in self.teacher.get("/tournaments")["items"]:
+            self.teacher.call("DELETE", f"/tournaments/{former['id']}")
         rules = {**RULES, **options.pop("rules", {})}
         body = {"rules": rules, **({} if room is None else {"room": room}), **options}
         answer = self.teacher.call("POST", "/tournaments", json=body)
@@ -87,7 +87,7 @@ def enter(api: Api, tournament: dict[str, Any], **body: Any) -> Any:
 
 def fields_of(problem: dict[str, Any]) -> list[str]:
     """Return the fields of a problem: those wrong by themselves, or the one that is in the way."""
-    by_themselves = [one["field"] for one in problem.get("errors", [])]
+    by_themselves = [error["field"] for error in problem.get("errors", [])]
     return by_themselves + ([problem["field"]] if "field" in problem else [])
 
 
@@ -118,17 +118,17 @@ def test_a_class_enters_and_the_file_verifies(school: Contest) -> None:
     assert first["is_own"]
     assert first["entry"]["settings"]["alpha"] == 0.2
     entered(pupils[1], tournament, agent="greedy")
-    own = school.look(tournament, pupils[0])
-    assert own["own"] == {"may_enter": True, "reason": None, "left": 5, "next_at": None}
-    assert [entry["entry"] is not None for entry in own["entries"]] == [
+    view_of_pupil = school.look(tournament, pupils[0])
+    assert view_of_pupil["own"] == {"may_enter": True, "reason": None, "left": 5, "next_at": None}
+    assert [entry["entry"] is not None for entry in view_of_pupil["entries"]] == [
         True,
         True,
         True,
         True,
         False,
     ]
-    assert {entry["judgements"] for entry in own["entries"]} == {None} or not any(
-        entry["judgements"] for entry in own["entries"]
+    assert {entry["judgements"] for entry in view_of_pupil["entries"]} == {None} or not any(
+        entry["judgements"] for entry in view_of_pupil["entries"]
     )
     (shown,) = pupils[0].get(f"/rooms/{code}")["tournaments"]
     assert shown == {"id": tournament["id"], "title": tournament["title"], "state": "open"}
@@ -155,10 +155,10 @@ def test_what_is_entered_again_is_the_same_entry(school: Contest) -> None:
     used_up = enter(pupil, tournament, agent="sarsa", steps=20)
     refused(used_up, 429, "You have used up your 2 entries of this hour", "minutes")
     assert 3500 < int(used_up.headers["retry-after"]) <= 3600
-    own = school.look(tournament, pupil)["own"]
-    assert (own["may_enter"], own["left"]) == (False, 0)
-    assert own["next_at"] is not None
-    assert own["reason"] == "You have used up your 2 entries of this hour."
+    own_entries = school.look(tournament, pupil)["own"]
+    assert (own_entries["may_enter"], own_entries["left"]) == (False, 0)
+    assert own_entries["next_at"] is not None
+    assert own_entries["reason"] == "You have used up your 2 entries of this hour."
     entered(pupil, tournament, 200, agent="sarsa")
     for steps in (1, 2, 3):  # operators have no limit
         view = entered(school.teacher, tournament, agent="sarsa", steps=steps, name="A guest")
@@ -257,48 +257,48 @@ def test_how_much_a_search_may_simulate_is_a_rule(school: Contest) -> None:
 def test_a_room_decides_who_may_know_and_enter(school: Contest) -> None:
     code, further = school.room(), ""
     further = school.room(is_further=True)
-    own, other, anyone = school.joined(code), school.joined(further), school.pupil()
+    member, further_member, anyone = school.joined(code), school.joined(further), school.pupil()
     tournament = school.open(code)
     path = f"/tournaments/{tournament['id']}"
-    for reader in (other, anyone):
+    for reader in (further_member, anyone):
         refused(reader.call("GET", path), 403, "join the room")
         refused(reader.call("GET", f"{path}/file"), 403)
         assert reader.get("/tournaments")["items"] == []
-    assert [one["id"] for one in own.get("/tournaments")["items"]] == [tournament["id"]]
-    refused(enter(other, tournament, agent="greedy"), 403)
+    assert [listed["id"] for listed in member.get("/tournaments")["items"]] == [tournament["id"]]
+    refused(enter(further_member, tournament, agent="greedy"), 403)
     refused(enter(anyone, tournament, agent="greedy"), 401)
     for method, below in (("POST", "/end"), ("DELETE", "")):
-        refused(own.call(method, path + below), 403)
-    refused(own.call("POST", "/tournaments", json={"rules": RULES}), 403)
+        refused(member.call(method, path + below), 403)
+    refused(member.call("POST", "/tournaments", json={"rules": RULES}), 403)
     school.teacher.call("POST", f"/rooms/{code}/freeze")
-    refused(enter(own, tournament, agent="greedy"), 409, "stopped the class")
-    view = school.look(tournament, own)
+    refused(enter(member, tournament, agent="greedy"), 409, "stopped the class")
+    view = school.look(tournament, member)
     assert view["own"]["reason"] == "The teacher has stopped the class for a moment; wait."
     school.teacher.call("POST", f"/rooms/{code}/freeze", json={"frozen": False})
-    entered(own, tournament, agent="greedy")
+    entered(member, tournament, agent="greedy")
     school.teacher.call("POST", f"/rooms/{code}/end")
-    refused(enter(own, tournament, agent="beam"), 401)
+    refused(enter(member, tournament, agent="beam"), 401)
     view = school.look(tournament, anyone)  # all may see what came of it
     assert not view["own"]["may_enter"]
     assert [entry["is_own"] for entry in view["entries"]] == [False] * 4
     assert school.ended(tournament)["state"] == "ended"
     free = school.open()
-    assert [one["id"] for one in anyone.get("/tournaments")["items"]] == [free["id"]]
+    assert [listed["id"] for listed in anyone.get("/tournaments")["items"]] == [free["id"]]
     assert school.look(free, anyone)["own"]["reason"].startswith("Operators alone enter")
     TypeAdapter(TournamentList).validate_python(school.teacher.get("/tournaments"))
 
 
 def test_names_are_those_that_the_room_shows(school: Contest) -> None:
     code = school.room(needs_approval=True)
-    one, other = school.joined(code), school.joined(code)
+    first, second = school.joined(code), school.joined(code)
     tournament = school.open(code)
-    entered(one, tournament, agent="greedy")
-    name = one.get(f"/rooms/{code}")["me"]["name"]
+    entered(first, tournament, agent="greedy")
+    name = first.get(f"/rooms/{code}")["me"]["name"]
 
     def names() -> list[str | None]:
         return [
             school.look(tournament, reader)["entries"][3]["name"]
-            for reader in (one, other, school.teacher)
+            for reader in (first, second, school.teacher)
         ]
 
     assert names() == [name, None, name]
@@ -334,15 +334,15 @@ def test_of_a_room_that_is_deleted_its_tournament_stays_without_names(school: Co
 
 def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     code = school.room(TRAINING_CARD)
-    one, other = school.joined(code), school.joined(code)
-    run = school.finished(one.call("POST", f"/rooms/{code}/runs").json())
+    first_pupil, second_pupil = school.joined(code), school.joined(code)
+    run = school.finished(first_pupil.call("POST", f"/rooms/{code}/runs").json())
     tournament = school.open(code)
     body = {"agent": "q-learning", "training_id": run["id"]}
-    refused(enter(other, tournament, **body), 422, "no training")
-    refused(enter(one, tournament, **body | {"agent": "sarsa"}), 422, "is of q-learning")
-    view = entered(one, tournament, **body)
+    refused(enter(second_pupil, tournament, **body), 422, "no training")
+    refused(enter(first_pupil, tournament, **body | {"agent": "sarsa"}), 422, "is of q-learning")
+    view = entered(first_pupil, tournament, **body)
     assert (view["training_id"], len(view["entry"]["table"])) == (run["id"], 64)
-    entered(one, tournament, 200, **body)
+    entered(first_pupil, tournament, 200, **body)
     entered(school.teacher, tournament, **body)
     teacher = school.teacher
     longer = teacher.finished(teacher.train(steps=61))
@@ -350,8 +350,8 @@ def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     first = teacher.finished(teacher.train(steps=40))
     second = teacher.finished(teacher.train(steps=40, continue_from=first["id"]))
     body = {"agent": "q-learning", "training_id": second["id"]}
-    told = "80 steps, with all that it continues"
-    problem = refused(enter(teacher, tournament, **body), 422, told)
+    problem_text = "80 steps, with all that it continues"
+    problem = refused(enter(teacher, tournament, **body), 422, problem_text)
     assert fields_of(problem) == ["training_id"]
     teacher.call("DELETE", f"/trainings/{first['id']}")
     refused(enter(teacher, tournament, **body), 422, "practice is not known")
@@ -362,7 +362,7 @@ def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     teacher.call("DELETE", f"/trainings/{run['id']}")
     ended = school.ended(tournament)
     tables = [entry for entry in ended["entries"] if entry["training_id"] is not None]
-    assert [one["training_id"] for one in tables] == [run["id"]] * 2
+    assert [entry["training_id"] for entry in tables] == [run["id"]] * 2
     # The same table on the same draws.
     assert tables[0]["judgements"] == tables[1]["judgements"]
     file = read_file(teacher.call("GET", f"/tournaments/{tournament['id']}/file").content, "file")

@@ -75,12 +75,14 @@ def test_all_is_there_after_a_restart(store: RunStore) -> None:
     assert after.get(tournament.id) == tournament
     assert after.get(tournament.id).draws == tournament.draws
     assert after.table(tournament, table.sha256) == tournaments.table(tournament, table.sha256)
-    assert [one.name for _, one in sorted(by_number(tournament).items())][:3] == list(REFERENCES)
+    assert [entrant.name for _, entrant in sorted(by_number(tournament).items())][:3] == list(
+        REFERENCES
+    )
     after.end(tournament.id, withdraw_waiting=True)
     again = Tournaments(store).get(tournament.id)
     assert again.state == "ending"
-    assert [one.number for one in again.waiting] == [1, 2]
-    assert [one.is_withdrawn for one in again.listed] == [False] * 3 + [True] * 4
+    assert [entry.number for entry in again.waiting] == [1, 2]
+    assert [entry.is_withdrawn for entry in again.listed] == [False] * 3 + [True] * 4
     Tournaments(store).delete(tournament.id)
     empty = Tournaments(store)
     assert empty.all() == []
@@ -103,7 +105,7 @@ def test_rules_that_were_stored_without_a_limit_of_transitions_have_that_of_then
 
 
 def by_number(tournament: Tournament) -> dict[int, Entrant]:
-    return {one.number: one.entrant for one in tournament.listed}
+    return {entry.number: entry.entrant for entry in tournament.listed}
 
 
 def test_a_damaged_row_is_left_out(store: RunStore) -> None:
@@ -120,7 +122,7 @@ def test_a_damaged_row_is_left_out(store: RunStore) -> None:
         statement, values = text(damage), {"id": tournament.id}
         store.database.write(lambda c, s=statement, v=values: c.execute(s, v))  # type: ignore[misc]
     left = Tournaments(store)
-    assert [one.id for one in left.all()] == [good.id]
+    assert [tournament_left.id for tournament_left in left.all()] == [good.id]
     assert len(left.get(good.id).entries) == 3
     # Its number is not given away again.
     assert left.enter(good.id, ONE, practised(0.5)).entry.number == 4
@@ -218,7 +220,7 @@ def test_those_with_the_fewest_judged_entries_are_next(quick: RunStore) -> None:
     second = [tournaments.enter(tournament.id, OTHER, practised(0.1 * n)).entry for n in (1, 2)]
 
     def turns() -> list[int]:
-        return [one.number for one in in_turn(tournament)]
+        return [entry.number for entry in in_turn(tournament)]
 
     assert turns() == [0, 1, 2, 3, 4, 5, 6, 7]
     for number in range(3):
@@ -244,7 +246,7 @@ def test_many_enter_at_once(quick: RunStore) -> None:
 
     with ThreadPoolExecutor(64) as pool:
         assert list(pool.map(enter, range(64))) == [3] * 64
-    assert [one.number for one in tournament.listed] == list(range(3 + 64 * 3))
+    assert [entry.number for entry in tournament.listed] == list(range(3 + 64 * 3))
     assert Tournaments(quick).get(tournament.id) == tournament
     for number in range(3):
         judged(tournaments, tournament, number)

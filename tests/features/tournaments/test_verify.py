@@ -18,12 +18,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("tournament")
     tournament = judged(rules_of(), [EntryConfig(agent="q-learning")])
     (place / "t.json").write_bytes(write_file(tournament))
-    own = tournament.entries[3]
+    entry = tournament.entries[3]
     better = (
-        tuple(replace(judgement, distance_m=0.9) for judgement in own.judgements[:1])
-        + own.judgements[1:]
+        tuple(replace(judgement, distance_m=0.9) for judgement in entry.judgements[:1])
+        + entry.judgements[1:]
     )
-    entries = (*tournament.entries[:3], replace(own, judgements=better))
+    entries = (*tournament.entries[:3], replace(entry, judgements=better))
     (place / "changed.json").write_bytes(write_file(replace(tournament, entries=entries)))
     return place
 

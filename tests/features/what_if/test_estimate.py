@@ -113,7 +113,7 @@ def test_too_many_requests_that_wait_are_refused_as_busy() -> None:
     known_s = estimates.of(training(steps=100))
     count = 1 + MAX_WAITING
     with ThreadPoolExecutor(count) as threads, pool.held():
-        asked = [
+        futures = [
             threads.submit(estimates.of, training(steps=100, agent="sarsa")) for _ in range(count)
         ]
         wait_until(lambda: estimates.turns.waiting == MAX_WAITING)
@@ -121,16 +121,16 @@ def test_too_many_requests_that_wait_are_refused_as_busy() -> None:
             estimates.of(training(steps=100, agent="dyna-q"))
         assert busy.value.retry_after_s > 0
         assert estimates.of(training(steps=100)) == known_s
-    assert [one.result() for one in asked] == [known_s] * count
+    assert [future.result() for future in futures] == [known_s] * count
     assert pool.timed == ["q-learning", "sarsa"]
     assert estimates.of(training(steps=100, agent="dyna-q")) == known_s
 
 
 @pytest.fixture(scope="module")
 def estimates() -> Iterator[Estimates]:
-    made = Estimates(ProcessPool(count=1), cores=1)
-    yield made
-    made.close()
+    running = Estimates(ProcessPool(count=1), cores=1)
+    yield running
+    running.close()
 
 
 def test_a_measured_estimate_is_near_the_truth(estimates: Estimates) -> None:

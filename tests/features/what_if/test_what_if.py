@@ -43,9 +43,9 @@ def changed(settings: dict[str, float], **fields: Any) -> TrainingConfig:
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[ProcessPool]:
-    made = ProcessPool(count=2)
-    yield made
-    made.close()
+    running = ProcessPool(count=2)
+    yield running
+    running.close()
 
 
 @pytest.fixture(scope="module")
@@ -121,8 +121,8 @@ def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: ProcessPool) -> 
 def test_interquartile_mean_equals_scipys() -> None:
     values = np.random.default_rng(1).normal(size=31)
     for count in (1, 2, 3, 5, 30, 31):
-        ours = _interquartile_mean(tuple(values[:count]))
-        assert ours == pytest.approx(stats.trim_mean(values[:count], 0.25))
+        mean = _interquartile_mean(tuple(values[:count]))
+        assert mean == pytest.approx(stats.trim_mean(values[:count], 0.25))
 
 
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_too_many_waiting_requests_are_refused_as_busy(what_if: WhatIf) -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    told = [answer for answer in answers if isinstance(answer, Busy)]
+    refusals = [answer for answer in answers if isinstance(answer, Busy)]
     assert len(answers) == 2 * MAX_WAITING
-    assert MAX_WAITING - 2 <= len(told) <= MAX_WAITING - 1
-    assert all(busy.retry_after_s > 0 for busy in told)
+    assert MAX_WAITING - 2 <= len(refusals) <= MAX_WAITING - 1
+    assert all(busy.retry_after_s > 0 for busy in refusals)

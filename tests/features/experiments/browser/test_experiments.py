@@ -32,10 +32,10 @@ FINDING = r"λ\s0\.[19] (leads with|walks farthest:) \d+\s%"
 ENDLESS = {**CORNER, "experiment": "sweep", "seeds": 5000, "steps": 2000, "workers": 1}
 
 
-def visit(dashboard: Dashboard, server: Serving, **asked: object) -> None:
+def visit(dashboard: Dashboard, server: Serving, **form: object) -> None:
     """The view of experiments, with this form; the 3D stage is not waited for."""
     page = dashboard.page
-    page.goto(f"{server.address}#experiments?{urlencode(asked)}")
+    page.goto(f"{server.address}#experiments?{urlencode(form)}")
     expect(dashboard.connection).to_contain_text("live")
     expect(page.get_by_role("heading", name="Experiments", exact=True)).to_be_visible()
 
@@ -113,17 +113,17 @@ def run_a_seed(dashboard: Dashboard) -> None:
     page.locator(".to-seed").first.dispatch_event("click")
     row = page.locator(".seed-list tr[aria-current]")
     expect(row).to_be_in_viewport()
-    told = row.locator("td").first.inner_text()
+    distance = row.locator("td").first.inner_text()
     row.get_by_role("button", name="Run this seed here").click()
     expect(page.get_by_role("region", name="Stage", exact=True)).to_be_visible()
 
     def races() -> list[dict[str, Any]]:
-        found: list[dict[str, Any]] = dashboard.get("/api/v1/races")["items"]
-        return found
+        items: list[dict[str, Any]] = dashboard.get("/api/v1/races")["items"]
+        return items
 
-    dashboard.eventually(lambda: [one["state"] for one in races()] == ["finished"], "its race")
+    dashboard.eventually(lambda: [race["state"] for race in races()] == ["finished"], "its race")
     [race] = races()
-    assert f"{race['result']['lanes'][0]['total_distance_m']:.2f}\u00a0m" == told
+    assert f"{race['result']['lanes'][0]['total_distance_m']:.2f}\u00a0m" == distance
     page.get_by_role("link", name="Experiments").click()
     replay = row.get_by_role("link", name="Replay")
     expect(replay).to_have_attribute("href", f"?run={race['id']}")
@@ -169,8 +169,8 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
 
 
 def trials_done(dashboard: Dashboard) -> int:
-    (found,) = dashboard.get("api/v1/experiments")["items"]
-    done: int = found["progress"]["done"]
+    (experiment,) = dashboard.get("api/v1/experiments")["items"]
+    done: int = experiment["progress"]["done"]
     return done
 
 
@@ -284,11 +284,11 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     button = page.get_by_role("button", name=re.compile("^Run League"))
     # In two worlds and two gaits greedy, greedy with the nominal model, and the learner.
     expect(button).to_have_text(f"Run League: {2 * 2 * 3 * 2} trials")
-    others = page.get_by_label("Others")
-    others.press_sequentially("limp:legs=2,5+slope:degrees=40")
+    other_worlds = page.get_by_label("Others")
+    other_worlds.press_sequentially("limp:legs=2,5+slope:degrees=40")
     expect(page.get_by_role("alert").filter(has_text="Must be from 0 to 30")).to_be_visible()
     expect(button).to_have_attribute("aria-disabled", "true")
-    others.press("Backspace")
+    other_worlds.press("Backspace")
     expect(button).to_have_text("Run League: 36 trials")
     page.get_by_role("textbox", name="Build tolerance").fill("0.05")
     assert dashboard.violations() == []
@@ -297,7 +297,7 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
 
     page.goto(link)
     expect(button).to_have_text("Run League: 36 trials")
-    expect(others).to_have_value("limp:legs=2,5+slope:degrees=4")
+    expect(other_worlds).to_have_value("limp:legs=2,5+slope:degrees=4")
     expect(page.get_by_role("checkbox", name="Two limp legs")).to_be_checked()
     page.get_by_role("radio", name="Recovery", exact=True).check(force=True)
     page.get_by_label("Seeds", exact=True).fill("1")
@@ -368,10 +368,12 @@ def tells_who_recovers(dashboard: Dashboard) -> None:
         expect(table.get_by_role("columnheader", name=title, exact=True)).to_have_count(1)
     dashboard.button("relative to greedy").click()
     expect(table.get_by_role("row", name=re.compile("^Greedy")).first).to_contain_text("100")
-    both = page.get_by_role("table", name="All worlds: share of the best known distance")
+    table_of_worlds = page.get_by_role("table", name="All worlds: share of the best known distance")
     titles = ["Agent", "Sensor noise, of greedy", "Sensor noise 10\u00a0mm, of greedy"]
-    expect(both.get_by_role("columnheader")).to_have_text(titles)
-    expect(both.get_by_role("row", name="Greedy, true model 100 % 100 %")).to_have_count(1)
+    expect(table_of_worlds.get_by_role("columnheader")).to_have_text(titles)
+    expect(table_of_worlds.get_by_role("row", name="Greedy, true model 100 % 100 %")).to_have_count(
+        1
+    )
     dashboard.button("Sensor noise 10\u00a0mm").click()
     expect(page.get_by_role("region", name="Recovery by agent")).to_contain_text(
         "Sensor noise 10\u00a0mm: share of"
@@ -382,7 +384,7 @@ def tells_who_recovers(dashboard: Dashboard) -> None:
 def small_runs(shared_server: Serving) -> list[str]:
     """The views of a finished Figure 4, a finished sweep and a finished recovery."""
     corner = {**CORNER, "robots": "stiff", "seeds": 3, "workers": 1}
-    asked = [
+    bodies = [
         {"experiment": "figure4", **corner, "gaits": ["left-right-origin", "left-right-vertical"]},
         {"experiment": "sweep", **corner, "settings": {"alpha": [0.1, 0.3]}, "steps": 100},
         {
@@ -393,21 +395,21 @@ def small_runs(shared_server: Serving) -> list[str]:
             "worlds": ["noise", "sensor-noise:sd_m=0.01"],
         },
     ]
-    ids = [call(shared_server, body)["id"] for body in asked]
+    ids = [call(shared_server, body)["id"] for body in bodies]
     deadline = time.monotonic() + 100
-    while any(call(shared_server, path=f"/{one}")["state"] != "finished" for one in ids):
+    while any(call(shared_server, path=f"/{run_id}")["state"] != "finished" for run_id in ids):
         assert time.monotonic() < deadline
         time.sleep(0.25)
-    return [f"{shared_server.address}#experiments?run={one}" for one in ids]
+    return [f"{shared_server.address}#experiments?run={run_id}" for run_id in ids]
 
 
 def call(server: Serving, body: object = None, path: str = "") -> dict[str, Any]:
     data = None if body is None else json.dumps(body).encode()
     headers = {"Content-Type": "application/json"}
-    asked = Request(f"{server.address}api/v1/experiments{path}", data, headers)
-    with urlopen(asked) as answer:
-        found: dict[str, Any] = json.loads(answer.read())
-    return found
+    request = Request(f"{server.address}api/v1/experiments{path}", data, headers)
+    with urlopen(request) as answer:
+        answered: dict[str, Any] = json.loads(answer.read())
+    return answered
 
 
 @pytest.mark.test

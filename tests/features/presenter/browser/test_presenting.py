@@ -158,15 +158,15 @@ def obeys_its_own_keys(dashboard: Dashboard) -> None:
 def test_its_button_is_in_the_header_before_its_code_as_it_would_move_the_others(
     dashboard: Dashboard, shared_server: Serving
 ) -> None:
-    held: list[Route] = []
+    blocked: list[Route] = []
 
     def hold_back(route: Route) -> None:
-        held.append(route)
+        blocked.append(route)
 
     dashboard.page.route("**/features/presenter/*.js", hold_back)
     dashboard.open(f"{shared_server.address}?depth=try")
     expect(dashboard.page.locator("header").get_by_role("button", name="Share")).to_be_visible()
     button = dashboard.page.locator("header").get_by_role("button", name="Present")
     expect(button.filter(visible=True)).to_have_count(1)
-    for route in held:
+    for route in blocked:
         route.continue_()
