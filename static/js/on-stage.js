@@ -285,8 +285,8 @@ export const progress = computed(() => {
 });
 
 /** As it was heard last: whether it goes on is not known. @type {(known: Progress) => Progress} */
-const lastKnown = ({ label, ...known }) =>
-  ({ ...known, label: `Last known: ${label[0].toLowerCase()}${label.slice(1)}`, left: "" });
+const lastKnown = ({ label, ...rest }) =>
+  ({ ...rest, label: `Last known: ${label[0].toLowerCase()}${label.slice(1)}`, left: "" });
 
 /** Told to those who wait for others. @param {Run} run */
 const placeInQueue = ({ queue_position: place }) => (isGuest.value && place ? `, place ${place}` : "");

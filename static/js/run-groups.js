@@ -72,9 +72,9 @@ function isSweep({ varied, members }) {
  * Every sweep of these fields among runs.
  * @type {(known: Known[], all: string[], varied: string[]) => Sweep[]}
  */
-function sweepsOver(known, all, varied) {
+function sweepsOver(runs, all, varied) {
   const fixed = all.filter((name) => !varied.includes(name));
-  const groups = groupedBy(known, (entry) => fixed.map((name) => keyOf(entry, name)).join("\n"));
+  const groups = groupedBy(runs, (entry) => fixed.map((name) => keyOf(entry, name)).join("\n"));
   return [...groups.values()].map((members) => ({ varied, members })).filter(isSweep);
 }
 

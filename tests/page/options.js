@@ -44,7 +44,7 @@ const NUMBER = { minimum: 0, is_required: true };
 const SHORT = { at_step: "at", until_step: "until" };
 /** @param {object} fields */
 const withNames = (fields) => Object.fromEntries(
-  Object.entries(fields).map(([name, one]) => [name, { ...one, short: SHORT[name] ?? name }]));
+  Object.entries(fields).map(([name, declaration]) => [name, { ...declaration, short: SHORT[name] ?? name }]));
 /** @type {(name: string, title: string, fields: object, more?: object) => any} */
 const kind = (name, title, fields, more = {}) =>
   ({ ...described(name, title), fields: withNames({ ...fields, ...STEP_FIELDS }), repairs: false, adjective: name,

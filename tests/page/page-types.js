@@ -30,13 +30,13 @@ function older(schema) {
 const byName = (schemas) =>
   Object.fromEntries(Object.entries(schemas).map(([name, schema]) => [name, older(schema)]));
 
-const made = await compile({ definitions: byName(JSON.parse(readFileSync(source, "utf8"))) }, "Root", {
+const compiled = await compile({ definitions: byName(JSON.parse(readFileSync(source, "utf8"))) }, "Root", {
   additionalProperties: false,
   bannerComment: BANNER,
   unreachableDefinitions: true,
 });
 
-const types = made
+const types = compiled
   .replace(/\nexport interface Root \{[^}]*\}/, "")
   .replaceAll(new RegExp(`\\n \\*\\n \\* ${REMARK}`, "g"), "")
   .replaceAll(new RegExp(`\\n/\\*\\*\\n \\* ${REMARK}\\n \\*/`, "g"), "")

@@ -8,7 +8,7 @@ const PAUSE_MS = 300;
 
 const key = signal("");
 /** What was asked for, in order. @type {string[]} */
-let asked = [];
+let requests = [];
 /** How often the answer was forgotten. */
 let forgotten = 0;
 /** Statuses of the next answers, then 200. @type {number[]} */
@@ -19,11 +19,11 @@ let stop = () => {};
 
 beforeEach(() => {
   mock.timers.enable({ apis: ["setTimeout"] });
-  [key.value, asked, forgotten, refusals] = ["", [], 0, []];
+  [key.value, requests, forgotten, refusals] = ["", [], 0, []];
   stop = askForNewest({
     key: () => key.value,
-    ask: (one) => new Promise((resolve, reject) => {
-      asked.push(one);
+    ask: (requestKey) => new Promise((resolve, reject) => {
+      requests.push(requestKey);
       const status = refusals.shift() ?? 200;
       answer = () => (status === 200 ? resolve() : reject(Object.assign(new Error("no"), { status })));
     }),
@@ -50,13 +50,13 @@ test("one request at a time, then one for the newest key after the pause", async
   key.value = "1";
   key.value = "2";
   key.value = "3";
-  assert.deepEqual(asked, ["1"]);
+  assert.deepEqual(requests, ["1"]);
   await answered(PAUSE_MS - 1);
-  assert.deepEqual(asked, ["1"]);
+  assert.deepEqual(requests, ["1"]);
   mock.timers.tick(1);
-  assert.deepEqual(asked, ["1", "3"]);
+  assert.deepEqual(requests, ["1", "3"]);
   await answered(10 * PAUSE_MS);
-  assert.deepEqual(asked, ["1", "3"], "what is known is not asked for");
+  assert.deepEqual(requests, ["1", "3"], "what is known is not asked for");
 });
 
 test("nothing is wanted: the answer is forgotten once, and asked for again when it is wanted again", async () => {
@@ -66,26 +66,26 @@ test("nothing is wanted: the answer is forgotten once, and asked for again when 
   key.value = "";
   assert.equal(forgotten, 1);
   key.value = "1";
-  assert.deepEqual(asked, ["1", "1"]);
+  assert.deepEqual(requests, ["1", "1"]);
   key.value = "";
   assert.equal(forgotten, 1, "a request is under way");
   await answered(PAUSE_MS);
-  assert.deepEqual([asked.length, forgotten], [2, 2]);
+  assert.deepEqual([requests.length, forgotten], [2, 2]);
 });
 
 test("after an error that may pass the newest key is asked for, later than after an answer", async () => {
   refusals = [503, 429, 503];
   key.value = "1";
   await answered(AGAIN_MS - 1);
-  assert.deepEqual(asked, ["1"]);
+  assert.deepEqual(requests, ["1"]);
   mock.timers.tick(1);
-  assert.deepEqual(asked, ["1", "1"]);
+  assert.deepEqual(requests, ["1", "1"]);
   key.value = "2";
   await answered(AGAIN_MS);
-  assert.deepEqual(asked, ["1", "1", "2"]);
+  assert.deepEqual(requests, ["1", "1", "2"]);
   key.value = "";
   await answered(AGAIN_MS);
-  assert.deepEqual([asked.length, forgotten], [3, 1], "the error is forgotten like an answer");
+  assert.deepEqual([requests.length, forgotten], [3, 1], "the error is forgotten like an answer");
 });
 
 test("after an error that interrupts what was known, that is asked for anew", async () => {
@@ -95,16 +95,16 @@ test("after an error that interrupts what was known, that is asked for anew", as
   key.value = "2";
   key.value = "1";
   await answered(AGAIN_MS);
-  assert.deepEqual(asked, ["1", "2", "1"]);
+  assert.deepEqual(requests, ["1", "2", "1"]);
 });
 
 test("an error that lasts counts as known", async () => {
   refusals = [404];
   key.value = "1";
   await answered(10 * AGAIN_MS);
-  assert.deepEqual(asked, ["1"]);
+  assert.deepEqual(requests, ["1"]);
   key.value = "2";
-  assert.deepEqual(asked, ["1", "2"]);
+  assert.deepEqual(requests, ["1", "2"]);
 });
 
 test("nothing is asked for or forgotten after the end", async () => {
@@ -113,5 +113,5 @@ test("nothing is asked for or forgotten after the end", async () => {
   stop();
   await answered(PAUSE_MS);
   key.value = "";
-  assert.deepEqual([asked, forgotten], [["1"], 0]);
+  assert.deepEqual([requests, forgotten], [["1"], 0]);
 });

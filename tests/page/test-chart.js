@@ -23,9 +23,9 @@ test("charts over the same axis show the same part, others all of theirs", () =>
 });
 
 test("a part that is not less than the whole axis is no zoom", () => {
-  for (const part of /** @type {Range[]} */ ([[0, 100], [-50, 150]])) {
-    zoomTo("race", part, WHOLE);
-    assert.equal(zoomOf("race"), null, String(part));
+  for (const range of /** @type {Range[]} */ ([[0, 100], [-50, 150]])) {
+    zoomTo("race", range, WHOLE);
+    assert.equal(zoomOf("race"), null, String(range));
   }
 });
 

@@ -16,8 +16,8 @@ const trained = (changes, more = {}) => makeRun({ config: { ...config, ...change
 
 /** @param {{ id: string }[]} runs */
 function compare(...runs) {
-  const known = runs.filter((run) => "kind" in run);
-  applyEvent("snapshot", { runs: known, stage: STAGE, scene: null, role: "operator" });
+  const existing = runs.filter((run) => "kind" in run);
+  applyEvent("snapshot", { runs: existing, stage: STAGE, scene: null, role: "operator" });
   page.compared.value = runs.map(({ id }) => id);
 }
 
@@ -42,8 +42,8 @@ test("a run that is gone, cannot be read or is an experiment says so, and the ot
   const damaged = { id: "bad", kind: "training", name: null, created_at: null, damaged: "its config is lost" };
   compare(run, experiment, damaged, { id: "gone" }, { id: "late" });
   applyEvent("run-deleted", { id: "gone" });
-  const told = compared.value.map(({ problem }) => problem?.split(":")[0] ?? null);
-  assert.deepEqual(told, [
+  const problems = compared.value.map(({ problem }) => problem?.split(":")[0] ?? null);
+  assert.deepEqual(problems, [
     null, "It is an experiment, which has its own report", "It cannot be read", "There is no such run", null,
   ]);
   assert.deepEqual(compared.value.map(({ letter }) => letter), ["A", "B", "C", "D", "E"]);
@@ -93,30 +93,30 @@ test("curves are of trainings that have been evaluated; of others it says why th
 });
 
 test("trained runs race if gait and grid are the same, and else it says what differs", () => {
-  const [one, other] = [trained({}, { name: "One" }), trained({ settings: { alpha: 0.9 } }, { name: "Other" })];
-  assert.equal(obstacle([one, other]), null);
-  assert.equal(conditionsOfRace([one, other]), null);
+  const [first, other] = [trained({}, { name: "One" }), trained({ settings: { alpha: 0.9 } }, { name: "Other" })];
+  assert.equal(obstacle([first, other]), null);
+  assert.equal(conditionsOfRace([first, other]), null);
   const finer = trained({ divisions: 4 }, { name: "Finer" });
-  const words = obstacle([one, finer]) ?? "";
+  const words = obstacle([first, finer]) ?? "";
   assert.match(words, /^They cannot race each other, as they differ in divisions of the foot grid \(2 and 4\): /);
   const running = trained({}, { name: "Young", state: "running" });
-  assert.equal(obstacle([one, running]), "Young is running: a training races once it is finished or stopped.");
+  assert.equal(obstacle([first, running]), "Young is running: a training races once it is finished or stopped.");
   const experiment = makeRun({ kind: "experiment", name: "All" });
-  assert.equal(obstacle([one, experiment]), "Only trainings and races have robots that can race: leave out All.");
-  assert.equal(obstacle([one]), "Select at least two runs with different robots.");
+  assert.equal(obstacle([first, experiment]), "Only trainings and races have robots that can race: leave out All.");
+  assert.equal(obstacle([first]), "Select at least two runs with different robots.");
   const many = Array.from({ length: 20 }, () => trained({}));
   assert.match(obstacle(many) ?? "", /^A race has up to \d+ lanes, and these are 20 lanes: choose fewer\.$/);
   const ideal = trained({ simulator: config.simulator === "mujoco" ? "kinematic" : "mujoco" });
-  assert.match(conditionsOfRace([one, ideal]) ?? "", /^All race with the simulator \(.*\) of One\.$/);
+  assert.match(conditionsOfRace([first, ideal]) ?? "", /^All race with the simulator \(.*\) of One\.$/);
 });
 
 test("a race brings all its lanes, each as it was started, and a training only once", async () => {
-  const [one, other] = [trained({}), trained({ settings: { alpha: 0.9 } })];
+  const [first, other] = [trained({}), trained({ settings: { alpha: 0.9 } })];
   const lane = { observation: "measured", keep_learning: false, plans_with: "world", settings: {} };
   const race = makeRun({
     kind: "race", name: "Race: Learner, Planner", is_named: false, state: "finished",
     config: { ...config, steps: 25, lanes: [
-      { ...lane, agent: "learner", training_id: one.id, plans_with: null },
+      { ...lane, agent: "learner", training_id: first.id, plans_with: null },
       { ...lane, agent: "planner", settings: { depth: 2 }, plans_with_by_default: true },
     ] },
   });
@@ -129,13 +129,13 @@ test("a race brings all its lanes, each as it was started, and a training only o
     sent = JSON.parse(String(body));
     return Promise.resolve(new Response(JSON.stringify(makeRun({ kind: "race", config: { lanes: [] } }))));
   });
-  applyEvent("snapshot", { runs: [one, other, race], stage: STAGE, scene: null, role: "operator" });
-  await raceThem([race, one, other]);
+  applyEvent("snapshot", { runs: [first, other, race], stage: STAGE, scene: null, role: "operator" });
+  await raceThem([race, first, other]);
   assert.deepEqual(sent.lanes, [
-    { agent: "learner", training_id: one.id, observation: "measured", keep_learning: false },
+    { agent: "learner", training_id: first.id, observation: "measured", keep_learning: false },
     { agent: "planner", settings: { depth: 2 }, observation: "measured", keep_learning: false },
     { agent: "learner", training_id: other.id },
   ]);
-  await raceThem([one, other]);
+  await raceThem([first, other]);
   assert.equal(sent.name, "Race of Learner: α\u00a00.3 and α\u00a00.9".slice(0, 20));
 });

@@ -26,7 +26,8 @@ const CASES = JSON.parse(readFileSync(new URL("../cases/conditions.json", import
 for (const { happens, step, holds } of CASES) {
   test(`${happens.join(", ")}: what holds in step ${step}`, () => {
     const disturbances = happens.map((/** @type {string} */ text) => parseText(text).value);
-    const texts = conditionsAt(disturbances, step).map((one) => textOf({ ...one, at_step: 0, until_step: null }));
+    const texts = conditionsAt(disturbances, step).map((condition) =>
+      textOf({ ...condition, at_step: 0, until_step: null }));
     assert.deepEqual(texts.sort(), holds.sort());
   });
 }
@@ -130,7 +131,7 @@ test("what ends nothing changes nothing", () => {
   const [repair, flat] = [{ kind: "repair", at_step: 0, legs: [4] }, { ...SLOPE, degrees: 0 }];
   const asBuilt = { kind: "friction", at_step: 0, value: 1 };
   const changed = (/** @type {any[]} */ conditions) =>
-    [repair, flat, asBuilt, LIMP].map((one) => changesSomething(one, conditions, "stiff"));
+    [repair, flat, asBuilt, LIMP].map((disturbance) => changesSomething(disturbance, conditions, "stiff"));
   assert.deepEqual(changed([]), [false, false, false, true]);
   assert.deepEqual(changed([{ ...LIMP, legs: [1] }]), [false, false, false, true]);
   assert.deepEqual(changed([LIMP, SLOPE, { ...asBuilt, value: 0.1 }]), [true, true, true, true]);
@@ -139,10 +140,10 @@ test("what ends nothing changes nothing", () => {
 test("of what is chosen to happen, each takes the place of what it contradicts and of nothing else", () => {
   const stuck = { kind: "stuck", at_step: 0, leg: 2, joint: "femur", angle_rad: -0.9 };
   const [weak, limp] = [{ kind: "weak", torque_share: 0.3 }, { kind: "limp" }]
-    .map((one) => ({ ...one, at_step: 0, legs: [2] }));
+    .map((disturbance) => ({ ...disturbance, at_step: 0, legs: [2] }));
   const repair = { kind: "repair", at_step: 0, legs: [2] };
   const choose = (/** @type {any[]} */ ones, /** @type {any[]} */ before = []) =>
-    ones.reduce((chosen, one) => chosenWith(chosen, one, before, "stiff"), []);
+    ones.reduce((chosen, disturbance) => chosenWith(chosen, disturbance, before, "stiff"), []);
   assert.deepEqual(choose([stuck, weak]), [stuck, weak]);
   assert.deepEqual(choose([stuck, weak, limp]), [stuck, limp]);
   assert.deepEqual(choose([stuck, { ...stuck, joint: "coxa" }, weak]), [stuck, { ...stuck, joint: "coxa" }, weak]);

@@ -36,8 +36,8 @@ test("no module of the core imports one of a feature", () => {
 
 test("a feature imports modules of those features alone that it needs, or names as used", () => {
   for (const { name, needs = [], uses = [] } of ALL) {
-    const others = scriptsIn(new URL(`${name}/`, FOLDER)).flatMap(importsOf).map(featureOf);
-    const undeclared = others.filter((other) => other !== null && ![name, ...needs, ...uses].includes(other));
+    const used = scriptsIn(new URL(`${name}/`, FOLDER)).flatMap(importsOf).map(featureOf);
+    const undeclared = used.filter((other) => other !== null && ![name, ...needs, ...uses].includes(other));
     assert.deepEqual(undeclared, [], name);
   }
 });
@@ -67,7 +67,7 @@ const WORDS = {
 };
 
 test("no module of the core names a feature", () => {
-  for (const name of Object.keys(WORDS).filter((one) => !NOT_YET.includes(one))) {
+  for (const name of Object.keys(WORDS).filter((feature) => !NOT_YET.includes(feature))) {
     const guilty = scriptsIn(CORE).flatMap(({ path, text }) => text.split("\n")
       .flatMap((line, n) => (WORDS[name].test(line) ? [`${path}:${n + 1}: ${line.trim()}`] : [])));
     assert.deepEqual(guilty, [], name);

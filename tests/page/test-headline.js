@@ -34,8 +34,8 @@ const row = (lane = 0, title = "Greedy", changes = {}) => ({ lane, title, fell_a
 const [A, B] = [row(0, "Greedy"), row(1, "Q-learning")];
 
 /** At the end of all steps. @type {(rows: any[], tracks: any[], happened?: any[]) => string | null} */
-const told = (rows, tracks, happened = []) => reasonOf(rows.map((one) => ({
-  ...one, made: tracks[one.lane]?.steps ?? 0, distance_m: tracks[one.lane]?.points.at(-1)[1] ?? 0,
+const reason = (rows, tracks, happened = []) => reasonOf(rows.map((shown) => ({
+  ...shown, made: tracks[shown.lane]?.steps ?? 0, distance_m: tracks[shown.lane]?.points.at(-1)[1] ?? 0,
 })), tracks, { time_s: 1000, isPast: false }, happened);
 
 beforeEach(() => {
@@ -51,22 +51,22 @@ test("steps count once they have ended, with the distance that they made", () =>
 });
 
 test("nothing is told without figures of both, nor of lanes that are level", () => {
-  assert.equal(told([A], [track([0.1])]), null);
-  assert.equal(told([A, B], [track([0.1])]), null);
-  assert.equal(told([A, B], [track([0.1]), track([])]), null);
-  assert.equal(told([A, B], [track(steps(5, 0.01)), track(steps(5, 0.009))]), null);
+  assert.equal(reason([A], [track([0.1])]), null);
+  assert.equal(reason([A, B], [track([0.1])]), null);
+  assert.equal(reason([A, B], [track([0.1]), track([])]), null);
+  assert.equal(reason([A, B], [track(steps(5, 0.01)), track(steps(5, 0.009))]), null);
 });
 
 test("1: the other has fallen, and the leader has not", () => {
   const tracks = [track(steps(9, 0.01)), track(steps(9, 0.002))];
-  assert.equal(told([A, row(1, "Q-learning", { fell_at_step: 6 })], tracks), "Q-learning has fallen at step 7.");
+  assert.equal(reason([A, row(1, "Q-learning", { fell_at_step: 6 })], tracks), "Q-learning has fallen at step 7.");
   const both = [row(0, "Greedy", { fell_at_step: 3 }), row(1, "Q-learning", { fell_at_step: 6 })];
-  assert.match(told(both, tracks) ?? "", /^Its steps are longer/);
+  assert.match(reason(both, tracks) ?? "", /^Its steps are longer/);
 });
 
 test("2: the other marches on the spot", () => {
   const tracks = [track(steps(12, 0.01)), track([0.02, 0.02, ...steps(10, 0.0004)])];
-  const words = told([A, B], tracks);
+  const words = reason([A, B], tracks);
   assert.equal(words, "Q-learning marches on the spot: 0.4\u00a0cm in its last ten steps.");
 });
 
@@ -74,38 +74,38 @@ test("3: a disturbance shortened the other's steps, and more than the leader's",
   const limp = { at_step: 5, words: "Leg\u00a01 limp from step 6" };
   const tracks = [track(steps(10, 0.01)), track([...steps(5, 0.01), ...steps(5, 0.004)])];
   const words = "Leg\u00a01 limp from step 6: Q-learning went 10.0\u00a0mm a step before, 4.0\u00a0mm after.";
-  assert.equal(told([A, B], tracks, [limp]), words);
-  assert.doesNotMatch(told([A, B], tracks, [{ ...limp, at_step: 9 }]) ?? "", /limp/, "two steps after tell nothing");
+  assert.equal(reason([A, B], tracks, [limp]), words);
+  assert.doesNotMatch(reason([A, B], tracks, [{ ...limp, at_step: 9 }]) ?? "", /limp/, "two steps after tell nothing");
   const alike = [track([...steps(5, 0.02), ...steps(5, 0.005)]), tracks[1]];
-  assert.doesNotMatch(told([A, B], alike, [limp]) ?? "", /limp/, "the leader lost more by it");
+  assert.doesNotMatch(reason([A, B], alike, [limp]) ?? "", /limp/, "the leader lost more by it");
 });
 
 test("4: its steps are longer, with the moves that it simulates before each, if it does", () => {
   const other = track(steps(8, 0.007));
-  assert.equal(told([A, B], [track(steps(8, 0.01), { futures: 12 }), other]),
+  assert.equal(reason([A, B], [track(steps(8, 0.01), { futures: 12 }), other]),
     "Its steps are longer: 10.0\u00a0mm against 7.0\u00a0mm of Q-learning. It simulates 12 moves before each.");
-  const table = told([A, B], [track(steps(8, 0.01)), other]);
+  const table = reason([A, B], [track(steps(8, 0.01)), other]);
   assert.equal(table, "Its steps are longer: 10.0\u00a0mm against 7.0\u00a0mm of Q-learning.");
   const uneven = { ...track(steps(2, 0.02)), futures: [10, 13] };
-  assert.match(told([A, B], [uneven, track(steps(2, 0.007))]) ?? "", /It simulates about 12 moves before each\.$/);
+  assert.match(reason([A, B], [uneven, track(steps(2, 0.007))]) ?? "", /It simulates about 12 moves before each\.$/);
 });
 
 test("5: it thinks less and has made more steps", () => {
-  const words = told([A, B], [track(steps(8, 0.01)), track(steps(4, 0.01), { thinking: 1 })]);
+  const words = reason([A, B], [track(steps(8, 0.01)), track(steps(4, 0.01), { thinking: 1 })]);
   assert.equal(words, "It thinks less: 8 steps made against 4 of Q-learning.");
 });
 
 test("6: both walk alike, and the lead is that of the first ten steps", () => {
   const first = track([...steps(5, 0.014), ...steps(35, 0.01)]);
-  assert.equal(told([A, B], [first, track(steps(40, 0.01))]), "Both walk alike; Greedy began 2\u00a0cm better.");
-  assert.equal(told([A, B], [track([...steps(35, 0.01), ...steps(5, 0.014)]), track(steps(40, 0.01))]), null);
+  assert.equal(reason([A, B], [first, track(steps(40, 0.01))]), "Both walk alike; Greedy began 2\u00a0cm better.");
+  assert.equal(reason([A, B], [track([...steps(35, 0.01), ...steps(5, 0.014)]), track(steps(40, 0.01))]), null);
 });
 
 test("a reason has at most 25 words", () => {
   const long = row(1, "Posterior sampling (deep)", { fell_at_step: 41 });
   const tracks = [track(steps(50, 0.0123), { futures: 7800 }), track(steps(50, 0.001), { futures: 7 })];
   for (const other of [long, { ...long, fell_at_step: null }, row(1, long.title)]) {
-    assert.ok((told([A, other], tracks) ?? "").split(" ").length <= 25);
+    assert.ok((reason([A, other], tracks) ?? "").split(" ").length <= 25);
   }
 });
 

@@ -9,8 +9,8 @@ const box = (/** @type {number} */ left, /** @type {number} */ top, width = 60, 
 
 /** @param {(import("../../static/js/components/line-labels.js").Box | null)[]} boxes */
 function assertApart(boxes) {
-  const shown = boxes.filter((one) => one !== null);
-  shown.forEach((one, n) => shown.slice(n + 1).forEach((other) => assert.ok(!overlap(one, other))));
+  const shown = boxes.filter((label) => label !== null);
+  shown.forEach((label, n) => shown.slice(n + 1).forEach((other) => assert.ok(!overlap(label, other))));
 }
 
 /**
@@ -18,11 +18,11 @@ function assertApart(boxes) {
  * @param {import("../../static/js/components/line-labels.js").Box[]} wanted
  */
 function assertInOrder(placed, wanted) {
-  const inOrder = placed.flatMap((one, n) => (one ? [{ ...one, line: wanted[n].top }] : []))
+  const inOrder = placed.flatMap((label, n) => (label ? [{ ...label, line: wanted[n].top }] : []))
     .sort((a, b) => a.line - b.line);
-  inOrder.forEach((one, n) => inOrder.slice(n + 1).forEach((other) => {
-    const isBeside = one.left + one.width <= other.left || other.left + other.width <= one.left;
-    assert.ok(isBeside || one.top < other.top, "labels have changed places");
+  inOrder.forEach((label, n) => inOrder.slice(n + 1).forEach((other) => {
+    const isBeside = label.left + label.width <= other.left || other.left + other.width <= label.left;
+    assert.ok(isBeside || label.top < other.top, "labels have changed places");
   }));
 }
 
@@ -60,14 +60,15 @@ test("no two labels overlap at any width, and eight find room", () => {
     const width = 120 + Math.floor(random() * 900);
     const bounds = { left: 0, top: 4, width, height: 172 };
     const caption = box(random() * width, 20 + random() * 100, 160, 14);
-    const captions = placeCaptions([caption, box(random() * width, 4, 50, 14)], bounds).filter((one) => one !== null);
+    const captions = placeCaptions([caption, box(random() * width, 4, 50, 14)], bounds)
+      .filter((place) => place !== null);
     const wanted = Array.from({ length: 1 + Math.floor(random() * 8) }, () =>
       box(random() * width, 20 + random() * 140, 30 + random() * 60, 16));
     const placed = placeLabels(wanted, captions, bounds);
     assertApart([...placed, ...captions]);
     assert.ok(!placed.includes(null), `a label is missing at ${width} px`);
     assertInOrder(placed, wanted);
-    assert.ok(placed.every((one) => one && one.left >= 0 && one.left + one.width <= width + 1e-9));
+    assert.ok(placed.every((place) => place && place.left >= 0 && place.left + place.width <= width + 1e-9));
   }
 });
 
@@ -84,12 +85,12 @@ test("a caption takes the first place with the fewest lines on it, and none over
 });
 
 test("a line passes through a box where one of its parts does, also between its points", () => {
-  const one = box(40, 40, 20, 10);
-  assert.ok(passes([[0, 0], [100, 100]], one));
-  assert.ok(!passes([[0, 0], [100, 20]], one));
-  assert.ok(passes([[0, 45], [100, 45]], one));
-  assert.ok(!passes([[0, 45], [30, 45]], one));
-  assert.ok(!passes([[70, 45], [100, 45]], one));
-  assert.ok(passes([[50, 0], [50, 100]], one));
-  assert.ok(!passes([], one));
+  const label = box(40, 40, 20, 10);
+  assert.ok(passes([[0, 0], [100, 100]], label));
+  assert.ok(!passes([[0, 0], [100, 20]], label));
+  assert.ok(passes([[0, 45], [100, 45]], label));
+  assert.ok(!passes([[0, 45], [30, 45]], label));
+  assert.ok(!passes([[70, 45], [100, 45]], label));
+  assert.ok(passes([[50, 0], [50, 100]], label));
+  assert.ok(!passes([], label));
 });

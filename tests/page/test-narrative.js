@@ -76,13 +76,13 @@ function factsOf({ run, timeline }, { scene, stage }) {
 /** The lane, or the lanes, of a list of names: of several alike, all. @param {any} facts @param {string} names */
 const named = ({ lanes }, names) => {
   const all = names.split(/, | and /);
-  const found = lanes.filter((/** @type {any} */ { title }) => all.includes(title));
-  assert.ok(all.every((one) => found.some((/** @type {any} */ { title }) => title === one)), names);
-  return found;
+  const matching = lanes.filter((/** @type {any} */ { title }) => all.includes(title));
+  assert.ok(all.every((other) => matching.some((/** @type {any} */ { title }) => title === other)), names);
+  return matching;
 };
 
 /** Two figures are the same, as far as words tell. @type {(told: number, figure: number, by: number) => void} */
-const assertNear = (told, figure, by) => assert.ok(Math.abs(told - figure) <= by, `${told} is not ${figure}`);
+const assertNear = (said, figure, by) => assert.ok(Math.abs(said - figure) <= by, `${said} is not ${figure}`);
 /** A number as it is told. @param {string} text */
 const numberIn = (text) => Number(text.replace("−", "-").replaceAll("\u202f", ""));
 /** @param {string} text as of 3 cm, 4 mm, under 1 mm */
@@ -147,7 +147,7 @@ const HEADLINES = [
       assert.equal(Boolean(names), facts.stage.ended, "who came farthest is told once all are there");
       if (!names) return;
       const [first] = inOrder(facts.lanes);
-      assert.ok(named(facts, names).every((/** @type {any} */ one) => first.distance - one.distance <= ROUNDED_M));
+      assert.ok(named(facts, names).every((/** @type {any} */ lane) => first.distance - lane.distance <= ROUNDED_M));
       assert.equal(far, metres(first.distance));
     }],
 ];
@@ -306,9 +306,9 @@ test("what can be done, chips and announcements follow from the run's state and 
     const isEarlyEnd = EARLY.includes(run.state) && stage.ended;
     assert.equal(note?.action?.run ?? null, isEarlyEnd && run.can_resume ? run : null);
     if (note?.action) assert.deepEqual([note.action.label, note.action.does], ["Go on", "resume"]);
-    const words = chips.map((one) => one.words);
+    const words = chips.map((chip) => chip.words);
     assert.equal(words[0], scene.label);
-    assert.equal(words.some((one) => one.endsWith(" paused")), !stage.ended);
+    assert.equal(words.some((text) => text.endsWith(" paused")), !stage.ended);
     if (words.includes("Time-out: photo finish")) assert.equal(state, "timed out");
     assert.equal(play.label, stage.ended ? "Play again for everyone"
       : `Play ${run.state === "running" ? "picture" : "replay"} for everyone`);
@@ -328,15 +328,15 @@ test("without the server what may have gone on is not claimed, and nothing can b
 test("a run that never began, that waits, or that is not there says so", () => {
   const [{ run, moments: [moment], timeline }] = ENTRIES;
   const none = { progress: { done: 0, total: 48 } };
-  const of = (/** @type {object} */ changes, /** @type {object} */ known = {}) => {
+  const of = (/** @type {object} */ changes, /** @type {object} */ extra = {}) => {
     const entry = { run: { ...run, ...changes }, timeline, tests: [] };
-    const { headline, bar, board, note } = saidAt(entry, moment, known);
+    const { headline, bar, board, note } = saidAt(entry, moment, extra);
     return [headline, bar, board, note?.what ?? null];
   };
   const never = "Stopped before its first step";
   assert.deepEqual(of({ ...none, state: "stopped" }),
-    [never, never, `${never}.`, "The race was stopped before its first step."].map((one, n) =>
-      (n === 3 && !moment.stage.ended ? null : one)));
+    [never, never, `${never}.`, "The race was stopped before its first step."].map((text, n) =>
+      (n === 3 && !moment.stage.ended ? null : text)));
   assert.deepEqual(of({ ...none, state: "queued" }, { scene: null }).slice(0, 3),
     ["On the start line", "It waits for its turn.", "The race is about to begin."]);
   const nobody = { run: null, race: null, scene: null };

@@ -25,8 +25,8 @@ const MIXED = setting("Mixed", { choices: ["max"], default: "max", valid: "max, 
 const mistake = (/** @type {Parsed<any>} */ parsed) => parsed.mistake ?? "";
 
 test("a text is read as the declaration says", () => {
-  const values = (/** @type {string[]} */ texts, /** @type {any} */ one) =>
-    texts.map((text) => parseSetting(text, one).value);
+  const values = (/** @type {string[]} */ texts, /** @type {any} */ declared) =>
+    texts.map((text) => parseSetting(text, declared).value);
   assert.deepEqual(values(["0.5", "", "x", "Infinity", "0x10", "1e400"], NUMBER),
     [0.5, undefined, undefined, undefined, undefined, undefined]);
   assert.deepEqual(values(["", "2"], OPTIONAL), [null, 2]);

@@ -31,9 +31,9 @@ test("what speaks against a robot is said at once: reach, tipping, tables that d
 });
 
 test("the recommended learner is offered where a body tips; else the usual one is left", () => {
-  const known = { ...STANDS, recommended_agent: "tracer" };
-  assert.equal(offeredFor(known), null);
-  assert.equal(offeredFor({ ...known, tips: true }), "tracer");
+  const preview = { ...STANDS, recommended_agent: "tracer" };
+  assert.equal(offeredFor(preview), null);
+  assert.equal(offeredFor({ ...preview, tips: true }), "tracer");
 });
 
 test("a leg moves to the next group, and after the last one begins its own", () => {

@@ -31,8 +31,8 @@ class Browser {
     for (const { type, name, props, updates, position } of messages) {
       if (type === "MeshMessage") this.nodes.set(name, { ...props });
       else if (type === "RemoveSceneNodeMessage") {
-        const gone = [...this.nodes.keys()].filter((one) => one === name || one.startsWith(`${name}/`));
-        gone.forEach((one) => this.nodes.delete(one));
+        const gone = [...this.nodes.keys()].filter((node) => node === name || node.startsWith(`${name}/`));
+        gone.forEach((node) => this.nodes.delete(node));
       } else if (this.nodes.has(name)) {
         Object.assign(/** @type {object} */ (this.nodes.get(name)), updates ?? { position });
       }
@@ -68,13 +68,13 @@ test("after any jumps and steps a browser shows the moment", () => {
   /** A message that can come after others. @param {Message[]} before */
   const next = (before) => {
     const name = names[random(names.length)];
-    const one = random(6);
+    const kind = random(6);
     const parent = name.slice(0, name.lastIndexOf("/"));
     if (parent && !(parent in new Browser().take(before).picture)) return create(parent);
-    if (one === 0 || !(name in new Browser().take(before).picture)) return create(name, { color: random(3) });
-    if (one === 1) return remove(name);
-    if (one === 2) return update(name, { color: random(9) });
-    if (one === 3) return update(name, { visible: random(2) });
+    if (kind === 0 || !(name in new Browser().take(before).picture)) return create(name, { color: random(3) });
+    if (kind === 1) return remove(name);
+    if (kind === 2) return update(name, { color: random(9) });
+    if (kind === 3) return update(name, { visible: random(2) });
     return place(name, random(9));
   };
   for (let run = 0; run < 300; run += 1) {

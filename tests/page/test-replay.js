@@ -28,7 +28,7 @@ function encoded(...times_s) {
 }
 
 /** Requests, by the last part of the address. @type {string[]} */
-let asked = [];
+let requests = [];
 /** Answers to requests for moments. @type {(time_s: number) => Response} */
 let moment = (time_s) => new Response(encoded(time_s));
 /** The run as it is recorded now. @type {Partial<typeof PLAN>} */
@@ -52,7 +52,7 @@ function segment(level, number) {
 /** @param {URL} address */
 function answerTo({ pathname, searchParams }) {
   const [level, last] = pathname.split("/").slice(-2);
-  asked.push(last);
+  requests.push(last);
   if (pathname.endsWith("/stage")) return stageAnswer;
   if (pathname.endsWith("/replay")) return plan(searchParams.get("clock") ?? "");
   if (pathname.endsWith("/scene")) return new Response(encoded(0));
@@ -80,7 +80,7 @@ async function wait(pictures) {
 
 afterEach(() => {
   closeReplay();
-  asked = [];
+  requests = [];
   recorded = {};
   plan = recordedPlan;
   moment = (time_s) => new Response(encoded(time_s));
@@ -91,14 +91,14 @@ test("a held replay asks for each moment once", async () => {
   await wait(20);
   seekReplay(2);
   await wait(20);
-  assert.deepEqual(asked, ["replay", "scene", "moment", "moment"]);
+  assert.deepEqual(requests, ["replay", "scene", "moment", "moment"]);
 });
 
 test("a server that does not answer is not asked again at each picture", async () => {
   moment = () => new Response("{}", { status: 503 });
   await openReplay("a", { time_s: 1, isPlaying: false });
   await wait(60);
-  assert.equal(asked.filter((one) => one === "moment").length, 1);
+  assert.equal(requests.filter((name) => name === "moment").length, 1);
   assert.equal(replayProblem.value, null, "it may come back");
 });
 
@@ -109,7 +109,7 @@ test("a run that was deleted meanwhile is told, and asked for no more", async ()
   seekReplay(2);
   await wait(60);
   assert.equal(replayProblem.value, "There is no run.");
-  assert.equal(asked.filter((one) => one === "moment").length, 2);
+  assert.equal(requests.filter((name) => name === "moment").length, 2);
 });
 
 test("a replay ends when its run is deleted elsewhere, and says so", async () => {
@@ -120,9 +120,9 @@ test("a replay ends when its run is deleted elsewhere, and says so", async () =>
   applyEvent("run-deleted", { id: "a" });
   assert.equal(replayProblem.value, "This run was deleted. It can be replayed no more.");
   assert.equal(drawn.at(-1)?.type, "RemoveSceneNodeMessage", "its robots are gone too");
-  asked = [];
+  requests = [];
   await wait(20);
-  assert.deepEqual(asked, []);
+  assert.deepEqual(requests, []);
   // Imported again it can be opened again.
   applyEvent("run", makeRun({ id: "a" }));
   await openReplay("a");
@@ -146,7 +146,7 @@ test("played again at its end it begins anew", async () => {
 });
 
 /** Number of requests for plans. */
-const plansAsked = () => asked.filter((one) => one === "replay").length;
+const plansAsked = () => requests.filter((name) => name === "replay").length;
 
 test("a run that still computes is played as far as it has come, until it ends", async () => {
   recorded = { complete: false, recorded_s: [[0, 1]] };
@@ -204,8 +204,8 @@ for (const order of [["wall", "free"], ["free", "wall"]]) {
     setStage({ clock: "wall" });
     setStage({ clock: "free" });
     plan = recordedPlan;
-    for (const one of order) {
-      arrive[one]();
+    for (const request of order) {
+      arrive[request]();
       await settle();
     }
     assert.equal(stage.value?.clock, "free");

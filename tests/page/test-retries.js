@@ -12,7 +12,7 @@ const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock:
 /** Statuses of the next answers, then 200. @type {number[]} */
 let refusals = [];
 /** Requests by the last part of their address. @type {string[]} */
-let asked = [];
+let requests = [];
 
 /** @type {Record<string, object>} */
 const ANSWERS = {
@@ -23,7 +23,7 @@ const ANSWERS = {
 /** @param {URL} address */
 function answerTo({ pathname }) {
   const name = pathname.split("/").at(-1) ?? "";
-  asked.push(name);
+  requests.push(name);
   const status = refusals.shift() ?? 200;
   return new Response(JSON.stringify(status === 200 ? ANSWERS[name] ?? makeRun({ id: name }) : {}), { status });
 }
@@ -35,7 +35,7 @@ followCurves(trainingsInView);
 beforeEach(() => {
   [options.value, connection.value, page.view.value] = [OPTIONS, "live", "race"];
   applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator" });
-  asked = [];
+  requests = [];
 });
 
 async function pass() {
@@ -61,11 +61,11 @@ const RACE = { kind: "race", config: { steps: 50, lanes: [] } };
 
 test("the timeline of a race", async () => {
   await show(RACE, 503, 503);
-  assert.deepEqual([asked, timeline.value?.lanes], [["timeline", "timeline", "timeline"], []]);
+  assert.deepEqual([requests, timeline.value?.lanes], [["timeline", "timeline", "timeline"], []]);
   assert.equal(timelineProblem.value, null);
-  asked = [];
+  requests = [];
   await show(RACE, 409);
-  assert.deepEqual([asked, timeline.value], [["timeline"], null]);
+  assert.deepEqual([requests, timeline.value], [["timeline"], null]);
   assert.equal(timelineProblem.value, "The server answered 409.");
   await show(RACE);
   assert.equal(timelineProblem.value, null);
@@ -73,8 +73,8 @@ test("the timeline of a race", async () => {
 
 test("the curve of a training, and the training that it continues", async () => {
   await show({}, 503);
-  assert.deepEqual([asked, curve.value?.points.length], [["curve", "curve"], 2]);
-  asked = [];
+  assert.deepEqual([requests, curve.value?.points.length], [["curve", "curve"], 2]);
+  requests = [];
   await show({ config: { steps: 10, continue_from: "earlier" } }, 404, 503);
-  assert.deepEqual(asked, ["curve", "earlier", "earlier", "curve", "curve"], "at last the curves of both");
+  assert.deepEqual(requests, ["curve", "earlier", "earlier", "curve", "curve"], "at last the curves of both");
 });

@@ -17,13 +17,13 @@ const { config } = makeRun({});
 const trained = (changes = {}, more = {}) => makeRun({ config: { ...config, ...changes }, ...more });
 
 /** The requests so far: [last part of the path, ids]. @type {[string, string[]][]} */
-let asked = [];
+let requests = [];
 /** Status with which the next request is refused. */
 let refusal = 0;
 
 globalThis.fetch = /** @type {any} */ ((/** @type {URL} */ address) => {
   const ids = address.searchParams.getAll("id");
-  asked.push([address.pathname.split("/").at(-1) ?? "", ids]);
+  requests.push([address.pathname.split("/").at(-1) ?? "", ids]);
   const [status, curves] = [refusal || 200, ids.map((id) => ({ id, steps: [50, 100], distances_m: [0.1, null] }))];
   refusal = 0;
   const body = ids.length ? { curves } : { evaluations: [], greedy_distance_m: null, best_known_m: null };
@@ -52,29 +52,29 @@ beforeEach(() => {
   connection.value = "connecting";
   change({ view: "race", selected: [], opened: null, isOverList: false });
   change({ grouping: "none", list: new URLSearchParams() });
-  asked = [];
+  requests = [];
 });
 
 test("details are of the first run, of the one that was opened, or of all that are selected", () => {
-  const [one, two, three] = [trained({ seed: 1 }), trained({ seed: 2 }), trained({ seed: 3 })];
-  know(one, two, three);
+  const [first, two, three] = [trained({ seed: 1 }), trained({ seed: 2 }), trained({ seed: 3 })];
+  know(first, two, three);
   const shown = () => subjects.value.map(({ id }) => id);
   assert.deepEqual(shown(), [three.id]);
-  openDetails(one.id);
-  assert.deepEqual([shown(), page.isOverList.value], [[one.id], false]);
+  openDetails(first.id);
+  assert.deepEqual([shown(), page.isOverList.value], [[first.id], false]);
   setSelected(two.id, true);
-  assert.deepEqual(shown(), [one.id]);
-  setSelected(one.id, true);
-  assert.deepEqual([shown(), isOfSelection.value], [[two.id, one.id], true], "in the order of the list");
+  assert.deepEqual(shown(), [first.id]);
+  setSelected(first.id, true);
+  assert.deepEqual([shown(), isOfSelection.value], [[two.id, first.id], true], "in the order of the list");
   openDetails(three.id);
   assert.deepEqual(shown(), [three.id], "beside the selection");
   openDetails(two.id);
-  assert.deepEqual(shown(), [two.id, one.id]);
+  assert.deepEqual(shown(), [two.id, first.id]);
   applyEvent("run-deleted", { id: two.id });
-  assert.deepEqual(shown(), [one.id]);
-  setSelected(one.id, false);
-  openDetails(one.id);
-  applyEvent("run-deleted", { id: one.id });
+  assert.deepEqual(shown(), [first.id]);
+  setSelected(first.id, false);
+  openDetails(first.id);
+  applyEvent("run-deleted", { id: first.id });
   assert.deepEqual([shown(), isOpenedGone.value], [[], true], "another's details would be taken for its own");
   openDetails(three.id);
   assert.deepEqual([shown(), isOpenedGone.value], [[three.id], false]);
@@ -88,13 +88,13 @@ test("small curves come for as many runs at once as are answered, then with each
   change({ view: "runs" });
   connection.value = "live";
   await pass();
-  const curves = () => asked.filter(([name]) => name === "curves").map(([, ids]) => ids);
+  const curves = () => requests.filter(([name]) => name === "curves").map(([, ids]) => ids);
   const [a, b, c] = runs.map(({ id }) => id);
   assert.deepEqual(curves(), [[c, b], [a]], "up to two runs at once here");
   assert.deepEqual(pointsOf(a), [[50, 0.1]], "what was not measured is no point");
   applyEvent("evaluation", { run_id: a, step: 150, distance_m: 0.3, epsilon: 0 });
   assert.deepEqual(pointsOf(a), [[50, 0.1], [150, 0.3]]);
-  asked = [];
+  requests = [];
   const late = trained({ seed: 4 });
   refusal = 503;
   applyEvent("run", late);
@@ -103,18 +103,18 @@ test("small curves come for as many runs at once as are answered, then with each
   await pass();
   assert.deepEqual(curves(), [[late.id], [late.id]], "again after an error that may pass");
   connection.value = "reconnecting";
-  asked = [];
+  requests = [];
   connection.value = "live";
   await pass();
   assert.equal(curves().flat().length, 4, "evaluations may have been missed");
 });
 
 test("figures of curves: the farthest point, and greedy’s distance where it is the same", () => {
-  const [one, other] = [trained({}, { greedy_distance_m: 0.5 }), trained({}, { greedy_distance_m: 0.4 })];
-  know(one, other);
+  const [first, second] = [trained({}, { greedy_distance_m: 0.5 }), trained({}, { greedy_distance_m: 0.4 })];
+  know(first, second);
   for (const [step, distance_m] of [[10, 0.2], [20, 0.4], [30, 0.1]]) {
-    applyEvent("evaluation", { run_id: one.id, step, distance_m, epsilon: 0 });
+    applyEvent("evaluation", { run_id: first.id, step, distance_m, epsilon: 0 });
   }
-  assert.deepEqual([bestPointOf(one)?.step, bestPointOf(other)], [20, null]);
-  assert.deepEqual([commonGreedy([one, one]), commonGreedy([one, other])], [0.5, null]);
+  assert.deepEqual([bestPointOf(first)?.step, bestPointOf(second)], [20, null]);
+  assert.deepEqual([commonGreedy([first, first]), commonGreedy([first, second])], [0.5, null]);
 });

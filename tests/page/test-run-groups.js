@@ -58,18 +58,18 @@ test("trainings that differ in one setting are a sweep, by its values; the other
 });
 
 test("a name that a person gave stays, and what differs stands beside it", () => {
-  const [one, other] = [trained(), trained({ seed: 7 }, { name: "Anna’s", is_named: true })];
-  const [group] = grouped([one, other]);
+  const [first, other] = [trained(), trained({ seed: 7 }, { name: "Anna’s", is_named: true })];
+  const [group] = grouped([first, other]);
   assert.equal(group.title, "Seeds");
   assert.deepEqual(group.rows.map(({ name, facts }) => [name, ...facts]), [["Seed\u00a00"], ["Anna’s", "Seed\u00a07"]]);
 });
 
 test("a setting by default is no difference between learners that have other defaults", () => {
   const tracer = { agent: "tracer", settings: { alpha: 0.1, trace: 0.9, kind: "replacing" } };
-  const [one, other] = [trained(), makeRun({ name: "Tracer", is_named: false, config: { ...config, ...tracer } })];
-  assert.deepEqual(inShort(grouped([one, other])), [["Learners", "Tracer", "Learner"]]);
+  const [run, other] = [trained(), makeRun({ name: "Tracer", is_named: false, config: { ...config, ...tracer } })];
+  assert.deepEqual(inShort(grouped([run, other])), [["Learners", "Tracer", "Learner"]]);
   const odd = { ...tracer, settings: { ...tracer.settings, trace: 0.5 } };
-  const groups = grouped([one, makeRun({ name: "Odd", config: { ...config, ...odd } })]);
+  const groups = grouped([run, makeRun({ name: "Odd", config: { ...config, ...odd } })]);
   assert.deepEqual(inShort(groups), [["On their own", "Odd", "Learner, 500 steps"]]);
 });
 
@@ -166,9 +166,9 @@ test("what came of a run is told beside its name", () => {
 
 test("names among others are short, and none twice", () => {
   applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator" });
-  const [one, two, again] = [0.3, 0.5, 0.5].map((alpha) => trained({ settings: { alpha } }));
-  assert.deepEqual(namesAmong([one, two, again]), ["α\u00a00.3", "α\u00a00.5", "α\u00a00.5 (2)"]);
-  assert.deepEqual(namesAmong([one, raced()]), ["Learner, 500 steps", "Race: Learner, Greedy"]);
+  const [first, two, again] = [0.3, 0.5, 0.5].map((alpha) => trained({ settings: { alpha } }));
+  assert.deepEqual(namesAmong([first, two, again]), ["α\u00a00.3", "α\u00a00.5", "α\u00a00.5 (2)"]);
+  assert.deepEqual(namesAmong([first, raced()]), ["Learner, 500 steps", "Race: Learner, Greedy"]);
   assert.deepEqual(namesAmong([two, again]), ["Learner, 500 steps", "Learner, 500 steps (2)"]);
   assert.deepEqual(factsOf(trained({ disturbances: [{ kind: "slope", at_step: 9, degrees: 8 }] })).at(-1),
     "Slope 8° from step 10");

@@ -64,9 +64,9 @@ test("a run is described by its live settings", () => {
 });
 
 test("settings of several agents are those of the first, then the others'", () => {
-  const found = settingsOf(["tracer", "learner"]);
-  assert.deepEqual(Object.keys(found), ["alpha", "trace", "kind", "gamma", "epsilon_start", "epsilon_end"]);
-  assert.equal(found.alpha.default, 0.1);
+  const settings = settingsOf(["tracer", "learner"]);
+  assert.deepEqual(Object.keys(settings), ["alpha", "trace", "kind", "gamma", "epsilon_start", "epsilon_end"]);
+  assert.equal(settings.alpha.default, 0.1);
 });
 
 /**

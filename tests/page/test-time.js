@@ -14,12 +14,12 @@ import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 /** @import { Run, TimelinePoint } from "../../static/js/types.js" */
 
 /** What was asked of the server: the method, the end of the address and the body. @type {unknown[][]} */
-let asked = [];
+let requests = [];
 /** The timeline that it has. */
 const TIMELINE = { clock: "paper", finish_line_m: 0.45, first_finish_s: 16, lanes: /** @type {object[]} */ ([]) };
 globalThis.fetch = (address, { method = "GET", body = null } = {}) => {
   const [last] = new URL(String(address)).pathname.split("/").slice(-1);
-  if (method !== "GET") asked.push([method, last, JSON.parse(String(body))]);
+  if (method !== "GET") requests.push([method, last, JSON.parse(String(body))]);
   const answer = last === "timeline" ? TIMELINE : commonStage.value;
   return Promise.resolve(new Response(JSON.stringify(answer)));
 };
@@ -68,7 +68,7 @@ beforeEach(() => {
   options.value = OPTIONS;
   connection.value = "live";
   TIMELINE.lanes = [];
-  asked = [];
+  requests = [];
 });
 
 // ---- the scale
@@ -182,7 +182,7 @@ test("operators seek on the stage, never beyond what is computed", async () => {
   seekTo(10);
   await settle();
   connection.value = "live";
-  assert.deepEqual(asked, [["PUT", "stage", { time_s: 50 }], ["PUT", "stage", { time_s: 100, playing: false }]]);
+  assert.deepEqual(requests, [["PUT", "stage", { time_s: 50 }], ["PUT", "stage", { time_s: 100, playing: false }]]);
 });
 
 test("each press of an arrow moves on from the one before, whatever the picture shows meanwhile", async () => {
@@ -193,18 +193,18 @@ test("each press of an arrow moves on from the one before, whatever the picture 
   at(3.1);
   for (let press = 0; press < 10; press += 1) pressSlider("ArrowRight");
   await settle();
-  const [, , last] = asked.at(-1) ?? [];
+  const [, , last] = requests.at(-1) ?? [];
   assert.deepEqual(Number(/** @type {{ time_s: number }} */ (last).time_s.toFixed(6)), 5);
   seekTo(8);
   at(8);
   pressSlider("ArrowLeft");
   await settle();
-  assert.deepEqual(asked.at(-1), ["PUT", "stage", { time_s: 7.9 }], "elsewhere in between");
+  assert.deepEqual(requests.at(-1), ["PUT", "stage", { time_s: 7.9 }], "elsewhere in between");
   pressSlider("PageUp");
   pressSlider("End");
   pressSlider("ArrowRight");
   await settle();
-  assert.deepEqual(asked.at(-1), ["PUT", "stage", { time_s: 16 }]);
+  assert.deepEqual(requests.at(-1), ["PUT", "stage", { time_s: 16 }]);
   assert.equal(pressSlider("x"), false);
 });
 
@@ -212,7 +212,7 @@ test("an arrow is a step of a practice", async () => {
   show(makeRun({ progress: { done: 500, total: 500 } }), { time_s: 5, duration_s: 250, computed_s: 250 });
   for (let press = 0; press < 4; press += 1) pressSlider("ArrowRight");
   await settle();
-  assert.deepEqual(asked.at(-1), ["PUT", "stage", { time_s: 7 }], "14 steps of half a second");
+  assert.deepEqual(requests.at(-1), ["PUT", "stage", { time_s: 7 }], "14 steps of half a second");
 });
 
 test("the next mark is that after the picture, and tests are no stops", async () => {
@@ -230,7 +230,7 @@ test("the next mark is that after the picture, and tests are no stops", async ()
   at(100);
   seekToMark(-1);
   await settle();
-  assert.deepEqual(asked.map(([, , body]) => body),
+  assert.deepEqual(requests.map(([, , body]) => body),
     [{ time_s: 60, playing: false }, { time_s: 60, playing: false }]);
 });
 
@@ -247,5 +247,5 @@ test("who may not play the stage plays a replay of their own, from the same mome
   seekTo(3);
   assert.equal(page.run.value, null, "the server, which has its pictures, is away");
   connection.value = "live";
-  assert.deepEqual(asked, []);
+  assert.deepEqual(requests, []);
 });

@@ -35,7 +35,7 @@ const TOLD_APART = ["agents", "gaits", "observations", "robots", "worlds"];
  * @param {Run["config"]} config
  */
 const worldsIn = ({ worlds = [] }) =>
-  worlds.some((/** @type {string} */ one) => one !== options.value?.worlds[0].name) ? worlds.map(worldTitle) : [];
+  worlds.some((/** @type {string} */ world) => world !== options.value?.worlds[0].name) ? worlds.map(worldTitle) : [];
 
 /**
  * The settings that a sweep varies: "α 0.1, 0.3".
@@ -52,8 +52,8 @@ const sweptIn = (config) =>
  * @param {Run} run
  */
 const describe = ({ config }) => {
-  const robots = (config.robots ?? []).map((one) =>
-    customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own robot");
+  const robots = (config.robots ?? []).map((robot) =>
+    customRobotInWords(robot) ?? storedName(robot) ?? presetOf(robot) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
     ...(experimentKind(config.experiment)?.takes_settings ? sweptIn(config) : []), worldsIn(config).join(", "),

@@ -27,7 +27,7 @@ export const experiments = computed(() =>
 
 /** The kind of a name, else the first. @type {(name: string) => ExperimentKind} */
 export const experimentOf = (name) =>
-  experiments.value.find((one) => one.name === name) ?? experiments.value[0];
+  experiments.value.find((kind) => kind.name === name) ?? experiments.value[0];
 
 // ---- the number of trials, counted before they are started
 
@@ -64,9 +64,9 @@ function countInWorld({ measure, references }, values, world) {
   const disturbances = world ? parseWorld(world).value ?? [] : [];
   const varies = Boolean(values.tolerance) || disturbances.some(({ kind }) => kind === NOISE);
   const trialsOf = (/** @type {string} */ agent) => {
-    const own = combinations(values, Object.keys(settingsOf([agent])));
-    if (!learns(agent)) return varies ? own * values.seeds : own;
-    return own * combinations(values, PRACTICE_FIELDS) * values.seeds * (measure === "blocks" ? 2 : 1);
+    const settingCount = combinations(values, Object.keys(settingsOf([agent])));
+    if (!learns(agent)) return varies ? settingCount * values.seeds : settingCount;
+    return settingCount * combinations(values, PRACTICE_FIELDS) * values.seeds * (measure === "blocks" ? 2 : 1);
   };
   const agents = [...new Set([...references, ...values.agents])];
   const nominal = disturbances.length || values.tolerance ? ["greedy"] : [];
@@ -86,14 +86,14 @@ const everySetting = computed(() => settingsOf((options.value?.agents ?? []).map
 
 const chosenAgents = computed(() => {
   const kind = chosenExperiment.value;
-  const given = kind.fields.includes("agents") ? valueOf("agents", READERS.agents, null) : null;
-  return /** @type {string[]} */ (given ?? kind.defaults.agents);
+  const typed = kind.fields.includes("agents") ? valueOf("agents", READERS.agents, null) : null;
+  return /** @type {string[]} */ (typed ?? kind.defaults.agents);
 });
 
 /** The settings of the chosen agents that the experiment varies, by name. */
 export const agentSettings = computed(() => {
-  const own = Object.entries(settingsOf(chosenAgents.value));
-  return Object.fromEntries(own.filter(([name]) => chosenExperiment.value.fields.includes(name)));
+  const settings = Object.entries(settingsOf(chosenAgents.value));
+  return Object.fromEntries(settings.filter(([name]) => chosenExperiment.value.fields.includes(name)));
 });
 
 /** @param {string} field */
@@ -103,17 +103,17 @@ export const takesField = (field) =>
 
 /** A setting's default for the chosen agents; empty if each has its own. @type {(name: string) => SettingValue[]} */
 function defaultOf(name) {
-  const own = chosenAgents.value.map((agent) => settingsOf([agent])[name]).filter(Boolean);
-  const found = [...new Set(own.map((setting) => setting.default))];
-  return found.length === 1 ? found : [];
+  const declared = chosenAgents.value.map((agent) => settingsOf([agent])[name]).filter(Boolean);
+  const ofAgents = [...new Set(declared.map((setting) => setting.default))];
+  return ofAgents.length === 1 ? ofAgents : [];
 }
 
 /** The experiment's defaults in the chosen simulator, with those of the settings of its agents. */
 export const defaults = computed(() => {
   const kind = chosenExperiment.value;
-  const own = Object.keys(agentSettings.value).map((name) => [name, defaultOf(name)]);
+  const ofSettings = Object.keys(agentSettings.value).map((name) => [name, defaultOf(name)]);
   const ofSimulator = kind.simulator_defaults[valueOf("simulator", READERS.simulator, kind.defaults.simulator)];
-  return /** @type {ExperimentValues} */ ({ ...kind.defaults, ...ofSimulator, ...Object.fromEntries(own) });
+  return /** @type {ExperimentValues} */ ({ ...kind.defaults, ...ofSimulator, ...Object.fromEntries(ofSettings) });
 });
 
 /** The fields that were set, and that the chosen experiment takes. */
@@ -121,9 +121,9 @@ export const givenFields = () => [...new Set(texts().value.keys())].filter(takes
 
 /** The values that the experiment would be started with. */
 export const values = computed(() => {
-  const own = givenFields().map((field) =>
+  const fields = givenFields().map((field) =>
     [field, valueOf(field, (text) => parse(field, text), defaults.value[field])]);
-  return /** @type {ExperimentValues} */ ({ ...defaults.value, ...Object.fromEntries(own) });
+  return /** @type {ExperimentValues} */ ({ ...defaults.value, ...Object.fromEntries(fields) });
 });
 
 /** The number of trials that it would have. */
@@ -161,7 +161,7 @@ export const offeredAgents = () => {
 /** @type {(text: string) => Parsed<string[]>} */
 function parseWorlds(text) {
   const worlds = splitWorlds(text);
-  const mistake = worlds.map((one) => parseWorld(one).mistake).find(Boolean);
+  const mistake = worlds.map((world) => parseWorld(world).mistake).find(Boolean);
   if (mistake) return { mistake };
   if (new Set(worlds).size < worlds.length) return { mistake: "Enter each world once" };
   return worlds.length ? { value: worlds } : { mistake: "Choose at least 1 of these" };
@@ -170,7 +170,7 @@ function parseWorlds(text) {
 /** Why a world cannot be had in the chosen simulator. */
 function mistakeInWorlds() {
   const { worlds, simulator } = values.value;
-  const disturbances = /** @type {string[]} */ (worlds ?? []).flatMap((one) => parseWorld(one).value ?? []);
+  const disturbances = /** @type {string[]} */ (worlds ?? []).flatMap((world) => parseWorld(world).value ?? []);
   const impossible = disturbances.find(({ kind }) => !isSimulated(kind, simulator));
   return impossible ? unknownTo(simulator, impossible.kind) : null;
 }
@@ -194,15 +194,15 @@ export function parse(field, text) {
 /** The fields whose text is not valid; any of them holds the start. */
 export const wrong = computed(() => {
   /** @type {Record<string, { text: string, mistake: string }>} */
-  const found = {};
+  const mistaken = {};
   for (const field of ["experiment", ...givenFields()]) {
     const text = texts().value.get(field);
     const { mistake: why } = text === null ? {} : parse(field, text);
-    if (text !== null && why !== undefined) found[field] = { text, mistake: why };
+    if (text !== null && why !== undefined) mistaken[field] = { text, mistake: why };
   }
   const mistake = takesField("worlds") ? mistakeInWorlds() : null;
-  if (mistake) found.worlds ??= { text: joined(values.value.worlds, ","), mistake };
-  return found;
+  if (mistake) mistaken.worlds ??= { text: joined(values.value.worlds, ","), mistake };
+  return mistaken;
 });
 
 /** Field → why its text is not valid. */
@@ -230,11 +230,11 @@ export function enter(field, text) {
 
 /**
  * Set the form anew: these values in their order, for a later one may depend on those before it.
- * @param {[string, ExperimentValue][]} given
+ * @param {[string, ExperimentValue][]} entries
  */
-export const setForm = (given) => batch(() => {
+export const setForm = (entries) => batch(() => {
   texts().value = new URLSearchParams();
-  for (const [field, value] of given) {
+  for (const [field, value] of entries) {
     if (field === "experiment") chooseExperiment(String(value));
     else setField(field, value);
   }
@@ -251,28 +251,28 @@ const FIRST = ["experiment", "simulator", "agents"];
  */
 export function setFormOf(config) {
   const { settings = {}, robots = [], ...fields } = config;
-  const named = robots.map((/** @type {RobotConfig} */ one) => (customRobotInWords(one) ? null : presetOf(one)));
+  const named = robots.map((/** @type {RobotConfig} */ robot) => (customRobotInWords(robot) ? null : presetOf(robot)));
   /** @type {Record<string, any>} */
-  const known = { ...fields, ...settings, robots: named };
+  const formValues = { ...fields, ...settings, robots: named };
   const { fields: taken } = experimentOf(config.experiment);
   const isSayable = (/** @type {string} */ field) =>
-    ![known[field]].flat().some((one) => one === null || typeof one === "object");
-  const given = [...new Set([...FIRST, ...taken])].filter((field) => known[field] !== undefined);
-  const order = given.filter((field) => field === "experiment" || taken.includes(field));
-  setForm(order.filter(isSayable).map((field) => [field, known[field]]));
+    ![formValues[field]].flat().some((value) => value === null || typeof value === "object");
+  const present = [...new Set([...FIRST, ...taken])].filter((field) => formValues[field] !== undefined);
+  const order = present.filter((field) => field === "experiment" || taken.includes(field));
+  setForm(order.filter(isSayable).map((field) => [field, formValues[field]]));
   return order.filter((field) => !isSayable(field));
 }
 
 /** The request's body. @returns {Record<string, unknown>} */
 export function requestBody() {
-  const own = givenFields().map((field) => [field, values.value[field]]);
-  const fields = Object.fromEntries(own.filter(([field]) => !(String(field) in everySetting.value)));
-  const settings = Object.fromEntries(own.filter(([field]) => String(field) in everySetting.value));
-  const { name = "", ...others } = fields;
+  const entries = givenFields().map((field) => [field, values.value[field]]);
+  const fields = Object.fromEntries(entries.filter(([field]) => !(String(field) in everySetting.value)));
+  const settings = Object.fromEntries(entries.filter(([field]) => String(field) in everySetting.value));
+  const { name = "", ...rest } = fields;
   const trimmed = String(name).trim();
   return {
     experiment: chosenExperiment.value.name,
-    ...others,
+    ...rest,
     ...(Object.keys(settings).length ? { settings } : {}),
     ...(trimmed ? { name: trimmed } : {}),
   };
@@ -292,8 +292,8 @@ function inAddress(field, value) {
 
 /** Read the form of the link that was opened: what is no field of it is told. */
 export function openExperimentForm() {
-  const known = ["experiment", "name", ...experiments.value.flatMap((kind) => kind.fields)];
-  const given = [...texts().peek()];
-  ignored.experiments.value = given.filter(([field]) => !known.includes(field)).map((part) => part.join("="));
-  texts().value = new URLSearchParams(given.filter(([field]) => known.includes(field)));
+  const names = ["experiment", "name", ...experiments.value.flatMap((kind) => kind.fields)];
+  const entries = [...texts().peek()];
+  ignored.experiments.value = entries.filter(([field]) => !names.includes(field)).map((pair) => pair.join("="));
+  texts().value = new URLSearchParams(entries.filter(([field]) => names.includes(field)));
 }

@@ -137,19 +137,19 @@ export const forgetPreset = () => (lastChosen.value = "");
  * @param {boolean} [showsAll] whether every setting is shown, whichever the preset
  */
 export function choosePreset(name, showsAll = false) {
-  const preset = presets().find((one) => one.name === name) ?? presets()[0];
+  const preset = presets().find((candidate) => candidate.name === name) ?? presets()[0];
   const begun = isUntouched() ? {} : chosenPreset().begins(chosenExperiment.value);
   const isOwn = (/** @type {string} */ field) => String(begun[field]) !== String(values.value[field]);
   const keepsAll = showsAll && preset.name !== EMPTY.name;
   const isShown = (/** @type {string} */ field) => keepsAll || [...preset.fields, "seed", "name"].includes(field);
-  const kept = givenFields().filter((field) => isOwn(field) && isShown(field));
-  const keptValues = Object.fromEntries(kept.map((field) => [field, values.value[field]]));
+  const keptFields = givenFields().filter((field) => isOwn(field) && isShown(field));
+  const keptValues = Object.fromEntries(keptFields.map((field) => [field, values.value[field]]));
   lastChosen.value = name;
-  const { simulator, agents, ...others } = /** @type {Record<string, ExperimentValue>} */ (
+  const { simulator, agents, ...rest } = /** @type {Record<string, ExperimentValue>} */ (
     { ...preset.begins(experimentOf(preset.experiment)), ...keptValues });
   /** @type {[string, ExperimentValue][]} */
   const first = [["experiment", preset.experiment], ["simulator", simulator], ["agents", agents]];
-  setForm([...first, ...Object.entries(others)].filter(([, value]) => value !== undefined));
+  setForm([...first, ...Object.entries(rest)].filter(([, value]) => value !== undefined));
   if (name !== "setting") return;
   // An agent that was kept may lack the setting with which the preset begins.
   if (values.value.agents.length > 1) setField("agents", values.value.agents.slice(0, 1));
@@ -159,12 +159,12 @@ export function choosePreset(name, showsAll = false) {
 // ---- the setting that is swept
 
 /** @param {string} name */
-const settingsOfAgent = (name) => served().agents.find((one) => one.name === name)?.settings ?? {};
+const settingsOfAgent = (name) => served().agents.find((agent) => agent.name === name)?.settings ?? {};
 
 /** The settings of the chosen agents that can be swept, then those of every practice. */
 export function sweepable() {
-  const own = Object.keys(agentSettings.value);
-  return [...own, ...chosenExperiment.value.grid.filter((field) => takesField(field) && !own.includes(field))];
+  const ofAgent = Object.keys(agentSettings.value);
+  return [...ofAgent, ...chosenExperiment.value.grid.filter((field) => takesField(field) && !ofAgent.includes(field))];
 }
 
 /** The setting whose values were last edited: with a single value it looks like any other. */
@@ -173,8 +173,8 @@ const lastSwept = signal("");
 /** The one that is swept: with several values, else the one that was edited, else the first that was set. */
 export function sweptField() {
   const all = sweptFields();
-  const found = [...all.filter(isSeveral), lastSwept.value, ...all].find((field) => sweepable().includes(field));
-  return found ?? sweepable()[0];
+  const swept = [...all.filter(isSeveral), lastSwept.value, ...all].find((field) => sweepable().includes(field));
+  return swept ?? sweepable()[0];
 }
 
 /** Shares of a quantity without a unit that goes from 0 to 1, and factors of any other; a length soon is too long. */
@@ -195,10 +195,10 @@ export function suggestedValues(setting) {
   const isShare = minimum === 0 && maximum === 1 && unit === null && !isWhole;
   const base = typeof usual === "number" ? usual : null;
   const multiples = base ? (isWhole ? FACTORS_OF_COUNTS : FACTORS).map((factor) => base * factor) : [];
-  const rounded = (isShare ? SHARES : multiples).map((one) =>
-    (isWhole ? Math.round(one) : Number(one.toPrecision(DIGITS))));
+  const rounded = (isShare ? SHARES : multiples).map((number) =>
+    (isWhole ? Math.round(number) : Number(number.toPrecision(DIGITS))));
   const all = [...new Set([...rounded, ...(base === null ? [] : [base])])];
-  return all.filter((one) => mistakeIn(one, setting, isWhole) === null).sort((a, b) => a - b);
+  return all.filter((number) => mistakeIn(number, setting, isWhole) === null).sort((a, b) => a - b);
 }
 
 /** Sweep a setting, and no other, in its suggested values. @param {string} name */

@@ -26,7 +26,7 @@ export function repeatAddress(all) {
   const [simulator, ...simulators] = each(configs.map((config) => config.simulator));
   if (simulators.length) return null;
   const { defaults } = experimentOf("sweep");
-  const own = configs.flatMap(({ agent, settings }) =>
+  const pairs = configs.flatMap(({ agent, settings }) =>
     Object.entries(settings).filter(([name, value]) => value !== agentOf(agent).settings[name]?.default));
   const fields = {
     seeds: [SEEDS], simulator: [simulator],
@@ -39,7 +39,7 @@ export function repeatAddress(all) {
     divisions: each(configs.map(({ divisions }) => divisions)),
     grid_side_m: each(configs.map(({ grid_side_m }) => grid_side_m)),
     // Where one training has another value than by default, the others have theirs.
-    ...Object.fromEntries(own.map(([name]) => [name, each(configs.flatMap(({ settings }) => settings[name] ?? []))])),
+    ...Object.fromEntries(pairs.map(([name]) => [name, each(configs.flatMap(({ settings }) => settings[name] ?? []))])),
   };
   const set = Object.entries(fields).filter(([name, values]) => String(values) !== String(defaults[name] ?? ""));
   const experiment = new URLSearchParams([["experiment", "sweep"],

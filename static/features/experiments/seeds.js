@@ -49,7 +49,7 @@ const PAUSE_MS = 10_000;
 export function followTrials(experiment) {
   let [isBusy, isResting, isOver] = [false, false, false];
   /** Experiment and progress of which the trials are known. */
-  let known = "";
+  let lastSeen = "";
   /** The experiment of which the runs are known; events tell of later ones. */
   let listed = "";
 
@@ -61,18 +61,18 @@ export function followTrials(experiment) {
   const load = async () => {
     const now = wanted.peek();
     const [id, progress] = now.split(" ");
-    const isUrgent = progress === "ended" || !known.startsWith(`${id} `);
-    if (!now || now === known || isBusy || isOver || (isResting && !isUrgent)) return;
+    const isUrgent = progress === "ended" || !lastSeen.startsWith(`${id} `);
+    if (!now || now === lastSeen || isBusy || isOver || (isResting && !isUrgent)) return;
     isBusy = true;
     try {
       const answer = await getTrials(id);
       newest.value = { id, trials: bySetting(answer.trials) };
       if (listed !== id) await requestEveryRun(`of experiment ${id}`);
-      [known, listed] = [now, id];
+      [lastSeen, listed] = [now, id];
       failure.value = null;
     } catch (error) {
       failure.value = { id, error: /** @type {RequestError} */ (error) };
-      known = isLasting(failure.value.error) ? now : `${id} `;
+      lastSeen = isLasting(failure.value.error) ? now : `${id} `;
     }
     [isBusy, isResting] = [false, true];
     clearTimeout(timer);
@@ -89,7 +89,7 @@ export function followTrials(experiment) {
   const stops = [
     effect(() => {
       // The snapshot after a reconnection has the newest runs only.
-      if (connection.value !== "live") [known, listed] = ["", ""];
+      if (connection.value !== "live") [lastSeen, listed] = ["", ""];
     }),
     effect(() => {
       if (wanted.value) load();
@@ -117,14 +117,14 @@ async function requestEveryRun(search) {
 /** @type {(trials: Trial[]) => Map<string, Trial[]>} */
 function bySetting(trials) {
   /** @type {Map<string, Trial[]>} */
-  const found = new Map();
+  const grouped = new Map();
   for (const trial of trials) {
     const setting = trial.key.slice(0, trial.key.lastIndexOf("#"));
-    const own = found.get(setting);
-    if (own) own.push(trial);
-    else found.set(setting, [trial]);
+    const ofSetting = grouped.get(setting);
+    if (ofSetting) ofSetting.push(trial);
+    else grouped.set(setting, [trial]);
   }
-  return found;
+  return grouped;
 }
 
 // ---- what is shown of them
@@ -137,7 +137,7 @@ function bySetting(trials) {
 export function repeatable({ settings, worlds = [] }) {
   const models = new Map(worlds.map(({ key, plans_with }) => [key, plans_with]));
   return settings.filter(({ blocks, n }) => blocks <= 1 && n > 0)
-    .map((one) => ({ ...one, plans_with: models.get(one.key) ?? null }));
+    .map((setting) => ({ ...setting, plans_with: models.get(setting.key) ?? null }));
 }
 
 /** Fields in which settings may differ, in the order in which a name tells them. */
@@ -155,7 +155,9 @@ export function namesOf(settings, parameters) {
     const value = valueTitle(field, setting[field]);
     return isNamedByValue(field) ? value : `${fieldTitle(field)} ${value}`;
   });
-  return new Map(settings.map((one) => [one.key, [valueTitle("agent", one.agent), ...wordsOf(one)].join(", ")]));
+  const nameOf = (/** @type {any} */ setting) =>
+    [valueTitle("agent", setting.agent), ...wordsOf(setting)].join(", ");
+  return new Map(settings.map((setting) => [setting.key, nameOf(setting)]));
 }
 
 /** Note of the server on a run that it made of a trial. */
@@ -164,13 +166,13 @@ const NOTE = /Trial (.+#\d+) of experiment (\w+)\./;
 /** Experiment and trial → the newest run that was made of it. */
 const runsOfTrials = computed(() => {
   /** @type {Map<string, Run>} */
-  const found = new Map();
+  const newestRuns = new Map();
   for (const run of runs.value.values()) {
     const [, key, id] = NOTE.exec(run.notes ?? "") ?? [];
     const place = `${id} ${key}`;
-    if (key && run.id > (found.get(place)?.id ?? "")) found.set(place, run);
+    if (key && run.id > (newestRuns.get(place)?.id ?? "")) newestRuns.set(place, run);
   }
-  return found;
+  return newestRuns;
 });
 
 /**
@@ -180,8 +182,8 @@ const runsOfTrials = computed(() => {
  */
 export function seedsOf(id, setting) {
   if (newest.value?.id !== id) return null;
-  const own = newest.value.trials.get(setting) ?? [];
-  return own.map(({ key, result }) => ({
+  const trials = newest.value.trials.get(setting) ?? [];
+  return trials.map(({ key, result }) => ({
     key,
     number: Number(key.slice(key.lastIndexOf("#") + 1)),
     distance_m: result?.distances_m?.at(-1) ?? null,

@@ -66,9 +66,9 @@ export function moveAt({ node, instance }, { pairs, cell_names }) {
 function presentCells(lane) {
   const values = scene.value?.action_values;
   if (values?.lane === lane) return values.current;
-  const told = explanation.value.answer;
-  const isOfLane = told && told.run_id === scene.value?.run_id && (told.lane ?? 0) === lane;
-  return isOfLane ? told.observation : null;
+  const { answer } = explanation.value;
+  const isOfLane = answer && answer.run_id === scene.value?.run_id && (answer.lane ?? 0) === lane;
+  return isOfLane ? answer.observation : null;
 }
 
 /** Keep the ghost in the 3D view, and answer clicks there, until the function that is returned is called. */

@@ -19,17 +19,17 @@ const INVITATION = "When a robot walks, its footfalls are drawn here: a bar wher
 
 export function Gait() {
   useEffect(followGait, []);
-  const known = analysis.value;
+  const figures = analysis.value;
   const { run, part: shown } = subject.value ?? {};
-  const lanes = useMemo(() => known && run && lanesOf(known, run), [known, run?.config, colorOf(0)]);
+  const lanes = useMemo(() => figures && run && lanesOf(figures, run), [figures, run?.config, colorOf(0)]);
   return html`
     <section class="gait-tab" aria-label="Gait analysis">
       <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
       ${run && run.progress.done > 0 && html`<${Choices} shown=${shown} />`}
       <div role="alert">${problem.value && html`<p class="problem">${problem.value}</p>`}</div>
       ${lanes?.length
-        ? html`<div><${Figures} lanes=${lanes} known=${known} /></div>`
-        : html`<${Empty} words=${known ? "Nothing is recorded of this part of the walk." : INVITATION} />`}
+        ? html`<div><${Figures} lanes=${lanes} known=${figures} /></div>`
+        : html`<${Empty} words=${figures ? "Nothing is recorded of this part of the walk." : INVITATION} />`}
     </section>
   `;
 }
@@ -40,11 +40,11 @@ export function Gait() {
 
 /**
  * The lanes of which something is known, with their names and colours.
- * @param {GaitAnalysis} known
+ * @param {GaitAnalysis} analysed
  * @param {Run} run
  */
-function lanesOf(known, run) {
-  return known.lanes.flatMap((lane, number) => {
+function lanesOf(analysed, run) {
+  return analysed.lanes.flatMap((lane, number) => {
     const config = run.config.lanes?.[number] ?? lane;
     const { color, title } = agentOf(lane.agent);
     if (!lane.figures) return [];

@@ -31,13 +31,14 @@ export function PresenterPanel() {
 
 /** Where others can watch; asked again when the server comes back, as it may have another address. */
 export function useSpectators() {
-  const [known, setKnown] = useState(/** @type {Spectators & { problem?: string } | null} */ (null));
+  const [spectators, setSpectators] = useState(/** @type {Spectators & { problem?: string } | null} */ (null));
   const state = connection.value;
   useEffect(() => {
     if (state !== "live") return;
-    call("GET", "spectators").then(setKnown, ({ message }) => setKnown(/** @type {any} */ ({ problem: message })));
+    call("GET", "spectators").then(setSpectators, ({ message }) =>
+      setSpectators(/** @type {any} */ ({ problem: message })));
   }, [state]);
-  return known;
+  return spectators;
 }
 
 /** The card that is shown, and the one that comes next. */

@@ -29,7 +29,7 @@ const DIGITS = 6;
 
 /** @type {<Value>(parts: Record<string, Value>, names: string[]) => Record<string, Value>} */
 const without = (parts, names) =>
-  Object.fromEntries(Object.entries(parts).filter(([part]) => !names.includes(part)));
+  Object.fromEntries(Object.entries(parts).filter(([name]) => !names.includes(name)));
 
 /** Without the digits that rotations add. @param {number} value */
 const rounded = (value) => Number(value.toFixed(DIGITS));
@@ -61,8 +61,8 @@ export function openBody(robot, gait, preview) {
     shared: preview.built,
     legs: preview.legs.map(({ built }, number) => ({
       parts: Object.fromEntries(Object.entries(built)
-        .filter(([part, value]) => PLACE.includes(part) || value !== (preview.built[part] ?? 0))
-        .map(([part, value]) => [part, rounded(value)])),
+        .filter(([field, value]) => PLACE.includes(field) || value !== (preview.built[field] ?? 0))
+        .map(([field, value]) => [field, rounded(value)])),
       given: legs?.[number] ?? null,
     })),
     up_deg: preview.forward_deg,
@@ -75,8 +75,8 @@ export function openBody(robot, gait, preview) {
 export const robotOf = ({ base, legs }) => ({ ...base, legs: legs.map(({ parts, given }) => given ?? parts) });
 
 /** A number that legs may share, or the torso's. @type {(body: Body, part: string) => number | null} */
-export const sharedPart = ({ base, shared }, part) =>
-  /** @type {number | null} */ (base[part] ?? shared[part] ?? null);
+export const sharedPart = ({ base, shared }, field) =>
+  /** @type {number | null} */ (base[field] ?? shared[field] ?? null);
 
 /** Whether the torso is a box. @param {Body} body */
 export const isBox = (body) => sharedPart(body, "torso_length_m") !== null;
@@ -93,7 +93,7 @@ const turnOf = ({ up_deg }) => up_deg - 90;
 export function partsOf(body, leg) {
   const { parts } = body.legs[leg - 1];
   const [x_m, y_m] = turned([parts.x_m, parts.y_m], -turnOf(body));
-  const shared = Object.keys(body.shared).map((part) => [part, sharedPart(body, part)]);
+  const shared = Object.keys(body.shared).map((field) => [field, sharedPart(body, field)]);
   return { ...Object.fromEntries(shared), ...parts, x_m, y_m, yaw_deg: wrapped(parts.yaw_deg - turnOf(body)) };
 }
 
@@ -119,7 +119,7 @@ export const numbersOf = ({ legs }) => legs.map((_, number) => number + 1);
 /** Half the side of a square picture in which a body has room [m], in whole steps. @param {Body} body */
 export function extentOf(body) {
   const feet = numbersOf(body).flatMap((leg) => Object.values(drawnLeg(body, leg)).flat());
-  const torso = ["torso_length_m", "torso_width_m"].map((part) => (sharedPart(body, part) ?? 0) / 2);
+  const torso = ["torso_length_m", "torso_width_m"].map((field) => (sharedPart(body, field) ?? 0) / 2);
   const farthest = Math.max(...feet.map(Math.abs), ...torso);
   return Math.ceil((farthest + MARGIN_M) / EXTENT_STEP_M) * EXTENT_STEP_M;
 }
@@ -151,9 +151,9 @@ export function mirrorOf(body, leg) {
 }
 
 /** Numbers of a leg, in the picture, as those of its mirror image. @param {Record<string, number>} parts */
-const mirrored = (parts) => Object.fromEntries(Object.entries(parts).map(([part, value]) => {
-  if (part === "x_m") return [part, 0 - value];
-  return [part, part === "yaw_deg" ? wrapped(180 - value) : value];
+const mirrored = (parts) => Object.fromEntries(Object.entries(parts).map(([field, value]) => {
+  if (field === "x_m") return [field, 0 - value];
+  return [field, field === "yaw_deg" ? wrapped(180 - value) : value];
 }));
 
 /**
@@ -181,15 +181,15 @@ export function changeLeg(body, leg, changes, mirror) {
 }
 
 /** Give all legs the same number. @type {(body: Body, part: string, value: number) => Body} */
-export function changeAll(body, part, value) {
-  if (PLACE.includes(part)) {
-    return numbersOf(body).reduce((changed, leg) => withParts(changed, leg, { [part]: value }), body);
+export function changeAll(body, field, value) {
+  if (PLACE.includes(field)) {
+    return numbersOf(body).reduce((changed, leg) => withParts(changed, leg, { [field]: value }), body);
   }
   const legs = body.legs.map((bodyLeg) => {
-    const hasOwn = part in bodyLeg.parts;
-    return hasOwn ? { parts: without(bodyLeg.parts, [part]), given: null } : bodyLeg;
+    const hasOwn = field in bodyLeg.parts;
+    return hasOwn ? { parts: without(bodyLeg.parts, [field]), given: null } : bodyLeg;
   });
-  return { ...body, legs, base: { ...body.base, [part]: value } };
+  return { ...body, legs, base: { ...body.base, [field]: value } };
 }
 
 /** @type {(body: Body, changes: Record<string, number>) => Body} */
@@ -295,7 +295,7 @@ export function addLeg(body, isMirrored, most) {
 /** A leg in the middle between two. @type {(body: Body, leg: number, next: number) => Record<string, number>} */
 function between(body, leg, next) {
   const [leftParts, rightParts] = [partsOf(body, leg), partsOf(body, next)];
-  const mean = (/** @type {string} */ part) => rounded((leftParts[part] + rightParts[part]) / 2);
+  const mean = (/** @type {string} */ field) => rounded((leftParts[field] + rightParts[field]) / 2);
   const yaw_deg = wrapped(leftParts.yaw_deg + wrapped(rightParts.yaw_deg - leftParts.yaw_deg) / 2);
   return { x_m: mean("x_m"), y_m: mean("y_m"), yaw_deg, foot_out_m: mean("foot_out_m") };
 }

@@ -35,16 +35,18 @@ export function WhatIf() {
 const hasMistakes = () => Object.keys(mistakes.value).length > 0;
 
 function Comparison() {
-  const known = answer.value;
-  const isOld = isComputing.value || isTooLong.value || hasMistakes() || (known && !isCurrent.value);
-  const far = known && HEADROOM * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
+  const comparison = answer.value;
+  const isOld = isComputing.value || isTooLong.value || hasMistakes() || (comparison && !isCurrent.value);
+  const far = comparison && HEADROOM * Math.max(
+    comparison.greedy_m, ...comparison.chosen.distances_m, ...comparison.default.distances_m,
+  );
   return html`
     <div class=${`trial ${isOld ? "old" : ""}`} aria-busy=${isComputing.value ? "true" : "false"}>
-      <${Half} title="These settings" half=${known?.chosen} known=${known} far=${far} />
-      <${Half} title="The defaults" half=${known?.default} known=${known} far=${far} />
-      ${known && html`<${Axis} known=${known} far=${far} />`}
+      <${Half} title="These settings" half=${comparison?.chosen} known=${comparison} far=${far} />
+      <${Half} title="The defaults" half=${comparison?.default} known=${comparison} far=${far} />
+      ${comparison && html`<${Axis} known=${comparison} far=${far} />`}
     </div>
-    <${Status} known=${known} />
+    <${Status} known=${comparison} />
   `;
 }
 

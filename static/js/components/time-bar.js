@@ -23,20 +23,20 @@ import { widthOf } from "./line-labels.js";
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
 
 export function TimeBar() {
-  const known = scale.value;
+  const shownScale = scale.value;
   const isOwn = page.run.value !== null;
   return html`
     <div class=${`time-bar ${isOwn ? "own" : ""}`} role="group" aria-label="Time">
-      ${known && html`<${PlayButton} />`}
-      ${isOwn && known && html`<${StepButtons} />`}
-      ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${narrative.value.bar}</p>`}
+      ${shownScale && html`<${PlayButton} />`}
+      ${isOwn && shownScale && html`<${StepButtons} />`}
+      ${shownScale ? html`<${Track} known=${shownScale} />` : html`<p class="dim no-time">${narrative.value.bar}</p>`}
       ${isOneLaneLeft(scene.value) && canPlay.value && !isStale.value && html`
         <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
           <${Icon} name="skip" />
         </button>
       `}
-      ${known && isAtLeast("try") && !isPhone.value && canPlay.value && html`<${EndAtTimeOut} /><${Speed} />`}
-      ${isOwn ? html`<${BackToStage} />` : known && html`<${ReplayButton} />`}
+      ${shownScale && isAtLeast("try") && !isPhone.value && canPlay.value && html`<${EndAtTimeOut} /><${Speed} />`}
+      ${isOwn ? html`<${BackToStage} />` : shownScale && html`<${ReplayButton} />`}
       <${Problem} at="stage" />
     </div>
   `;

@@ -139,11 +139,11 @@ const isPressed = ({ lasts, nothing }) => !lasts || nothing === null;
  * The values of a kind as they hold, with what is being changed. A change takes effect when the slider, or its key,
  * has been let go: a run has only so many disturbances.
  * @param {SizedKind} kind
- * @param {[string, FieldOption][]} others
+ * @param {[string, FieldOption][]} otherFields
  * @param {Disturbance[]} conditions
  * @param {OnDisturb} onDisturb
  */
-function useValues(kind, others, conditions, onDisturb) {
+function useValues(kind, otherFields, conditions, onDisturb) {
   const [draft, setDraft] = useState(/** @type {Record<string, number | null>} */ ({}));
   const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
   const present = conditions.find((other) => other.kind === kind.name);
@@ -152,7 +152,7 @@ function useValues(kind, others, conditions, onDisturb) {
   /** @param {Record<string, number | null | undefined>} chosen */
   const send = async (chosen) => {
     clearTimeout(timer.current);
-    const set = [kind.size, ...others.map(([other]) => other)].filter((field) => chosen[field] !== undefined);
+    const set = [kind.size, ...otherFields.map(([other]) => other)].filter((field) => chosen[field] !== undefined);
     const wanted = { kind: kind.name, ...Object.fromEntries(set.map((field) => [field, chosen[field] ?? null])) };
     await onDisturb(/** @type {Disturbance} */ (wanted));
     if (!isPressed(kind)) setDraft({});
@@ -177,8 +177,8 @@ function useValues(kind, others, conditions, onDisturb) {
 /** @param {{ kind: SizedKind, conditions: Disturbance[], config: Walk, onDisturb: OnDisturb }} props */
 function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb }) {
   const field = kind.fields[kind.size];
-  const others = ownFieldsOf(kind).filter(([other]) => other !== kind.size);
-  const { values, change, finish, send } = useValues(kind, others, conditions, onDisturb);
+  const otherFields = ownFieldsOf(kind).filter(([other]) => other !== kind.size);
+  const { values, change, finish, send } = useValues(kind, otherFields, conditions, onDisturb);
   const ends = sliderOf(field) ?? { min: 0, max: 1, step: 0.01 };
   const isDisabled = !isSimulated(kind.name, simulator);
   const id = `disturb-${kind.name}`;
@@ -211,7 +211,7 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
       `}
       <p class=${isAtLeast("study") ? "sentence" : "sr-only"} id=${`${id}-help`}>${kind.description}</p>
     </div>
-    ${isAtLeast("study") && others.map(([name, setting]) => {
+    ${isAtLeast("study") && otherFields.map(([name, setting]) => {
       const more = {
         id: `${id}-${name}`, of: kind.title, setting, value: values[name] ?? setting.default, isDisabled,
       };

@@ -84,11 +84,11 @@ export function distanceAt(points, time) {
 
 /** @typedef {ReturnType<typeof rowOf>} Row a lane at the moment; without a rank where no rule ranks it */
 
-/** One row per lane, the leader first; null before the race. @param {KnownRace} known @returns {Row[] | null} */
-export function rowsOf(known) {
-  const { race, scene } = known;
+/** One row per lane, the leader first; null before the race. @param {KnownRace} moment @returns {Row[] | null} */
+export function rowsOf(moment) {
+  const { race, scene } = moment;
   if (!race || scene?.run_id !== race.id || (!isActive(race) && !race.progress.done)) return null;
-  const rows = race.config.lanes.map((lane, number) => rowOf(known, lane, number));
+  const rows = race.config.lanes.map((lane, number) => rowOf(moment, lane, number));
   return rows.sort((a, b) => a.place - b.place || a.lane - b.lane);
 }
 
@@ -103,9 +103,9 @@ function laneOf({ race, scene, timeline, clock, agents }, config, number) {
   };
 }
 
-/** @param {KnownRace} known @param {LaneConfig} config @param {number} number of the lane, from 0 */
-function rowOf(known, config, number) {
-  const lane = laneOf(known, config, number);
+/** @param {KnownRace} moment @param {LaneConfig} config @param {number} number of the lane, from 0 */
+function rowOf(moment, config, number) {
+  const lane = laneOf(moment, config, number);
   return { lane: number, agent: config.agent, training_id: config.training_id, ...placeOf(lane), ...workOf(lane),
     ...distancesOf(lane), ...postureOf(lane), ...thinkingOf(lane) };
 }

@@ -132,18 +132,18 @@ function stateOfRace(run, scene) {
 
 /**
  * All that is said of a run and its moment.
- * @param {Known} known
+ * @param {Known} context
  */
-export function narrativeOf(known) {
-  const rows = rowsOf(known);
-  const facts = { ...known, rows, state: stateOf(known, rows) };
+export function narrativeOf(context) {
+  const rows = rowsOf(context);
+  const facts = { ...context, rows, state: stateOf(context, rows) };
   const entry = { ...SILENT, ...TABLE[facts.state] };
   const headline = entry.headline(facts);
   return {
     state: facts.state,
     rows,
     headline,
-    reason: entry.isUnseen && known.isAway && !known.isOwn ? STOOD : entry.reason(facts),
+    reason: entry.isUnseen && context.isAway && !context.isOwn ? STOOD : entry.reason(facts),
     rule: entry.rule(facts),
     bar: entry.bar(facts),
     board: entry.board(facts),

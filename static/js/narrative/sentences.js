@@ -54,17 +54,17 @@ function leftAt({ race }, rows) {
 }
 
 /** While others are still on their way to where they were left, nobody leads. */
-/** @param {KnownRace} known @param {Row[]} rows */
-export const halting = (known, rows) => leftAt(known, rows);
+/** @param {KnownRace} moment @param {Row[]} rows */
+export const halting = (moment, rows) => leftAt(moment, rows);
 
 /**
  * How far the lanes came: "Stopped at step 26 of 50: Greedy had come farthest, 0.31 m".
- * @param {KnownRace} known
+ * @param {KnownRace} moment
  * @param {Row[]} rows
  */
-export function leftOff(known, rows) {
+export function leftOff(moment, rows) {
   const best = Math.max(...rows.map((row) => row.distance_m ?? 0));
-  const at = leftAt(known, rows);
+  const at = leftAt(moment, rows);
   if (best <= 0) return at;
   return `${at}: ${titlesOf(rows.filter((row) => (row.distance_m ?? 0) === best))} had come farthest, ${metres(best)}`;
 }
@@ -79,9 +79,9 @@ export const ruleBefore = (clockTitle, [{ steps }]) =>
 export const ruleOfNone = (clockTitle, { race }) =>
   `No ranking: the race ${earlyEndOf(race)?.verb} before its time-out (${clockTitle}).`;
 
-/** @param {string} clockTitle @param {KnownRace} known @param {Row[]} rows */
-export const ruleAfter = (clockTitle, known, rows) =>
-  `Ranked at time-out${decidedWhen(rows, firstTimedOut(known))} (${clockTitle}).`;
+/** @param {string} clockTitle @param {KnownRace} moment @param {Row[]} rows */
+export const ruleAfter = (clockTitle, moment, rows) =>
+  `Ranked at time-out${decidedWhen(rows, firstTimedOut(moment))} (${clockTitle}).`;
 
 /**
  * The moment that decided a race: "when Q-learning had used its 50 steps".
@@ -96,9 +96,9 @@ function decidedWhen(rows, first) {
   return `, when ${titlesOf(timedOut)} had used ${timedOut.length > 1 ? "their" : "its"} ${used}`;
 }
 
-/** Numbers of the lanes that use all their steps first; none while it is not known. @param {KnownRace} known */
-export function firstTimedOut(known) {
-  const ends = known.race?.config.lanes.map((_, number) => endOf(known, number)) ?? [];
+/** Numbers of the lanes that use all their steps first; none while it is not known. @param {KnownRace} moment */
+export function firstTimedOut(moment) {
+  const ends = moment.race?.config.lanes.map((_, number) => endOf(moment, number)) ?? [];
   const first = Math.min(...ends);
   return ends.flatMap((end, number) => (Number.isFinite(end) && end - first <= SAME_MOMENT_S ? [number] : []));
 }

@@ -129,8 +129,8 @@ test("an experiment is repeated with its config, and what no form can say is tol
   open("");
   assert.deepEqual(setFormOf(/** @type {any} */ (config)), []);
   assert.deepEqual(requestBody(), { ...body, settings: { alpha: [0.1, 0.5] } });
-  const own = { ...config, robots: [{ preset: "stiff", femur_m: 0.1 }], gaits: [{ pairs: [] }] };
-  assert.deepEqual(setFormOf(/** @type {any} */ (own)), ["gaits", "robots"]);
+  const withOwnRobot = { ...config, robots: [{ preset: "stiff", femur_m: 0.1 }], gaits: [{ pairs: [] }] };
+  assert.deepEqual(setFormOf(/** @type {any} */ (withOwnRobot)), ["gaits", "robots"]);
 });
 
 test("a state says how far it is", () => {
@@ -151,21 +151,21 @@ test("an experiment says in a line what is the same in all its trials", () => {
 });
 
 test("a finding is the server’s sentence, else its verdicts, else nothing", () => {
-  const known = (/** @type {object} */ parts) => /** @type {Summary} */ (/** @type {unknown} */ (parts));
+  const summary = (/** @type {object} */ parts) => /** @type {Summary} */ (/** @type {unknown} */ (parts));
   const claims = ["holds", "does not hold", "does not hold", "not established"].map((verdict) => ({ verdict }));
-  assert.equal(findingIn(known({ finding: "α 0.1 leads.", claims })), "α 0.1 leads.");
+  assert.equal(findingIn(summary({ finding: "α 0.1 leads.", claims })), "α 0.1 leads.");
   assert.equal(verdictsInWords(claims),
     "Of the paper’s 4 claims 1 holds, 2 do not hold and 1 is not established.");
-  assert.equal(findingIn(known({ finding: "", claims })), verdictsInWords(claims));
-  assert.equal(findingIn(known({ finding: "", claims: claims.slice(0, 1) })), "");
+  assert.equal(findingIn(summary({ finding: "", claims })), verdictsInWords(claims));
+  assert.equal(findingIn(summary({ finding: "", claims: claims.slice(0, 1) })), "");
   assert.equal(findingIn(null), "");
 });
 
 test("a row tells the finding whether its report was opened or not", () => {
-  const told = (/** @type {object} */ result) =>
+  const outcome = (/** @type {object} */ result) =>
     outcomeOf(makeRun({ kind: "experiment", result: /** @type {any} */ (result) }), null);
-  assert.equal(told({ finding: "α 0.1 leads.", claims: [{ verdict: "holds" }] }), "α 0.1 leads.");
-  assert.equal(told({ finding: "", claims: [{ verdict: "holds" }, { verdict: "depends" }] }),
+  assert.equal(outcome({ finding: "α 0.1 leads.", claims: [{ verdict: "holds" }] }), "α 0.1 leads.");
+  assert.equal(outcome({ finding: "", claims: [{ verdict: "holds" }, { verdict: "depends" }] }),
     "Of the paper’s 2 claims 1 holds and 1 depends on the case.");
   assert.equal(outcomeOf(makeRun({ kind: "experiment", result: null }), null), "");
 });

@@ -17,16 +17,17 @@ const know = (...runs) => applyEvent("snapshot", { runs, stage: makeStage(), sce
 
 test("trainings are repeated with several seeds by the form of an experiment, where it can have their settings", () => {
   const settings = (/** @type {number} */ alpha) => ({ settings: { ...config.settings, alpha } });
-  const [one, two] = [trained({ steps: 80, ...settings(0.3) }), trained({ steps: 80, ...settings(0.5) })];
-  know(one, two);
-  assert.equal(repeatAddress([one, two]), "#experiments?experiment=sweep&seeds=12&gaits=tripod&steps=80&alpha=0.3;0.5");
-  assert.equal(repeatAddress([one]), "#experiments?experiment=sweep&seeds=12&gaits=tripod&steps=80");
+  const [first, second] = [trained({ steps: 80, ...settings(0.3) }), trained({ steps: 80, ...settings(0.5) })];
+  know(first, second);
+  const address = "#experiments?experiment=sweep&seeds=12&gaits=tripod&steps=80";
+  assert.equal(repeatAddress([first, second]), `${address}&alpha=0.3;0.5`);
+  assert.equal(repeatAddress([first]), address);
   const limping = trained({ disturbances: OPTIONS.worlds[1].disturbances });
-  const others = [
-    limping, trained({ gait: { right_leg: 1 } }), trained({ continue_from: one.id }), trained({ tolerance: 0.1 }),
+  const otherRuns = [
+    limping, trained({ gait: { right_leg: 1 } }), trained({ continue_from: first.id }), trained({ tolerance: 0.1 }),
     trained({ reward: "track" }),
     makeRun({ kind: "race", name: "Final", config: { lanes: [] } }),
   ];
-  for (const other of others) assert.equal(repeatAddress([one, other]), null);
-  assert.equal(repeatAddress([one, trained({ simulator: "kinematic" })]), null);
+  for (const other of otherRuns) assert.equal(repeatAddress([first, other]), null);
+  assert.equal(repeatAddress([first, trained({ simulator: "kinematic" })]), null);
 });

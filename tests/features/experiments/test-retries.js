@@ -12,7 +12,7 @@ const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock:
 /** Statuses of the next answers, then 200. @type {number[]} */
 let refusals = [];
 /** Requests by the last part of their address. @type {string[]} */
-let asked = [];
+let requests = [];
 
 /** @type {Record<string, object>} */
 const ANSWERS = {
@@ -22,7 +22,7 @@ const ANSWERS = {
 /** @param {URL} address */
 function answerTo({ pathname }) {
   const name = pathname.split("/").at(-1) ?? "";
-  asked.push(name);
+  requests.push(name);
   const status = refusals.shift() ?? 200;
   return new Response(JSON.stringify(status === 200 ? ANSWERS[name] ?? makeRun({ id: name }) : {}), { status });
 }
@@ -34,7 +34,7 @@ followSummary();
 beforeEach(() => {
   [options.value, connection.value, page.view.value] = [OPTIONS, "live", "race"];
   applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator" });
-  asked = [];
+  requests = [];
 });
 
 async function pass() {
@@ -59,14 +59,14 @@ async function show(/** @type {object} */ changes, /** @type {number[]} */ ...st
 test("the summary of an experiment", async () => {
   page.view.value = "experiments";
   await show({ kind: "experiment", config: {} }, 503);
-  assert.equal(asked.filter((one) => one === "summary").length, 2);
+  assert.equal(requests.filter((name) => name === "summary").length, 2);
   assert.deepEqual([summaryError.value, summary.value?.settings], [null, []]);
 });
 
 test("the summary of another experiment is requested at once, that of the same one after a pause", async () => {
   page.view.value = "experiments";
   const [first, other] = [1, 2].map(() => makeRun({ kind: "experiment", config: {} }));
-  const summaries = () => asked.filter((one) => one === "summary").length;
+  const summaries = () => requests.filter((name) => name === "summary").length;
   const tell = (/** @type {number} */ done) => applyEvent("summary", { run_id: first.id, done });
   page.report.value = first.id;
   applyEvent("snapshot", { runs: [first, other], stage: STAGE, scene: null, role: "operator" });

@@ -18,7 +18,7 @@ const TRIALS = ["tripod/sarsa#10", "tripod/sarsa#2", "tripod/sarsa/alpha=1#2"].m
 ));
 
 /** Requests by the last part of their address. @type {string[]} */
-let asked = [];
+let requests = [];
 /** Status with which the server refuses; 0 where it does not. */
 let refusedWith = 0;
 /** Pages of the list of runs. @type {object[][]} */
@@ -27,7 +27,7 @@ let pages = [[]];
 /** @param {URL} address */
 function answerTo({ pathname, searchParams }) {
   const name = pathname.split("/").at(-1) ?? "";
-  asked.push(name);
+  requests.push(name);
   if (refusedWith) return new Response(JSON.stringify({ detail: "Busy." }), { status: refusedWith });
   if (name === "trials") return new Response(JSON.stringify({ trials: TRIALS }));
   assert.equal(searchParams.get("search"), "of experiment e1");
@@ -52,7 +52,7 @@ beforeEach(() => {
   mock.timers.enable({ apis: ["setTimeout"] });
   globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
   connection.value = "live";
-  [asked, refusedWith, pages] = [[], 0, [[]]];
+  [requests, refusedWith, pages] = [[], 0, [[]]];
 });
 
 afterEach(() => mock.timers.reset());
@@ -84,10 +84,10 @@ test("the trials of an experiment that runs are requested now and then, and once
     proceed(done);
     await pass(2000);
   }
-  assert.deepEqual(asked, ["trials", "runs", "trials"]);
+  assert.deepEqual(requests, ["trials", "runs", "trials"]);
   run.value = { ...run.value, state: "finished" };
   for (let n = 0; n < 3; n += 1) await pass(20_000);
-  assert.deepEqual(asked.slice(3), ["trials"]);
+  assert.deepEqual(requests.slice(3), ["trials"]);
   stop();
 });
 
@@ -100,7 +100,7 @@ test("an error of theirs is told without hindering that a seed is run, and they 
   await pass(10_000);
   await pass(0);
   assert.equal(problemOf("e1"), null);
-  assert.deepEqual(asked, ["trials", "trials", "runs"]);
+  assert.deepEqual(requests, ["trials", "trials", "runs"]);
   stop();
   connection.value = "reconnecting";
 });
@@ -112,10 +112,10 @@ test("no single run repeats a practice in blocks", () => {
 
 test("searches that plan with different models have different names", () => {
   options.value = OPTIONS;
-  const one = { agent: "greedy", gait: "tripod", steps: 500, blocks: 0, n: 1 };
-  const settings = [{ ...one, key: "a" }, { ...one, key: "b" }, { ...one, key: "c", agent: "sarsa" }];
+  const setting = { agent: "greedy", gait: "tripod", steps: 500, blocks: 0, n: 1 };
+  const settings = [{ ...setting, key: "a" }, { ...setting, key: "b" }, { ...setting, key: "c", agent: "sarsa" }];
   const worlds = [{ key: "a", plans_with: "world" }, { key: "b", plans_with: "nominal" }];
-  const found = repeatable(/** @type {any} */ ({ settings, worlds }));
-  assert.deepEqual([...namesOf(found, ["steps"]).values()],
+  const repeated = repeatable(/** @type {any} */ ({ settings, worlds }));
+  assert.deepEqual([...namesOf(repeated, ["steps"]).values()],
     ["Greedy, true model", "Greedy, nominal model", "sarsa"]);
 });

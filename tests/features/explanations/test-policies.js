@@ -15,28 +15,28 @@ const GRID = { pairs: [[1, 4]], cells_m: /** @type {[number, number][]} */ ([[0,
 /** A table of one pair on three cells: the best cell of each state, and whether the state was tried. */
 const tableWith = (/** @type {number[]} */ best, /** @type {number[]} */ tries) => ({
   ...GRID, cell_names: ["home", "front", "back"], states: 3,
-  values: best.map((cell) => [0, 1, 2].map((one) => (one === cell ? 0.05 : 0))),
+  values: best.map((cell) => [0, 1, 2].map((cellOfValue) => (cellOfValue === cell ? 0.05 : 0))),
   visits: tries.map((times) => [times, 0, 0]),
   best: best.map((cell) => /** @type {[number, number]} */ ([0, cell])),
 });
 
 test("policies differ where both have practised and their best moves are others", () => {
-  const [one, other] = [tableWith([1, 2, 0], [3, 9, 0]), tableWith([2, 0, 1], [5, 4, 7])];
-  const { different, compared: states, known } = differencesOf(one, other);
+  const [first, other] = [tableWith([1, 2, 0], [3, 9, 0]), tableWith([2, 0, 1], [5, 4, 7])];
+  const { different, compared: states, known } = differencesOf(first, other);
   assert.equal(states, 3);
   assert.deepEqual(known, { both: 2, one: 0, other: 1 });
   assert.deepEqual(different.map(({ index }) => index), [1, 0], "the most visited first");
   assert.deepEqual(different[0].bests.map(({ move, value, visits }) => [move, value, visits]), [
     [[0, 2], 0.05, 9], [[0, 0], 0.05, 4],
   ]);
-  assert.equal(haveSameStates(one, other), true);
-  assert.equal(haveSameStates(one, { ...other, pairs: [[2, 5]] }), false);
+  assert.equal(haveSameStates(first, other), true);
+  assert.equal(haveSameStates(first, { ...other, pairs: [[2, 5]] }), false);
 });
 
 // ---- loading tables
 
 /** Requests for tables: [training, step, first state]. @type {(string | null)[][]} */
-let asked = [];
+let requests = [];
 /** Steps that the server knows of. */
 let newestStep = 0;
 /** Status with which the server refuses; 0 where it does not. */
@@ -45,13 +45,13 @@ let refusedWith = 0;
 /** Answers with two of three states at once. @param {URL} address */
 function answerTo({ pathname, searchParams }) {
   const [step, first] = ["step", "first"].map((name) => searchParams.get(name));
-  asked.push([pathname.split("/").at(-2) ?? "", step, first]);
+  requests.push([pathname.split("/").at(-2) ?? "", step, first]);
   if (refusedWith) return new Response(JSON.stringify({ detail: "No." }), { status: refusedWith });
   const { values, visits, best, ...whole } = tableWith([1, 2, 0], [newestStep, 0, 0]);
-  const part = [Number(first), Number(first) + 2];
+  const range = [Number(first), Number(first) + 2];
   return new Response(JSON.stringify({
     ...whole, step: Number(step ?? newestStep), first: Number(first),
-    values: values.slice(...part), visits: visits.slice(...part), best: best.slice(...part),
+    values: values.slice(...range), visits: visits.slice(...range), best: best.slice(...range),
   }));
 }
 
@@ -70,7 +70,7 @@ function followOne() {
   mock.timers.enable({ apis: ["setTimeout"] });
   globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
   connection.value = "live";
-  [asked, newestStep] = [[], 10];
+  [requests, newestStep] = [[], 10];
   const run = signal(makeRun({ state: "running", progress: { done: 10, total: 100 } }));
   const stop = followTables(() => [run.value]);
   const proceed = (/** @type {number} */ done) => {
@@ -87,7 +87,7 @@ test("the table of a training that runs is loaded now and then, all parts of one
   assert.equal(tableOf(run.value), null);
   for (const done of [20, 30, 40]) proceed(done);
   await pass(2900);
-  assert.deepEqual(asked.map(([, step, first]) => [step, first]), [[null, "0"], ["10", "2"]]);
+  assert.deepEqual(requests.map(([, step, first]) => [step, first]), [[null, "0"], ["10", "2"]]);
   const { table } = tableOf(run.value) ?? {};
   assert.deepEqual(table?.visits.map(([times]) => times), [10, 0, 0]);
   await pass(200);
@@ -95,7 +95,7 @@ test("the table of a training that runs is loaded now and then, all parts of one
   await pass(0);
   assert.equal(tableOf(run.value)?.table?.visits[0][0], 40);
   for (let n = 0; n < 5; n += 1) await pass(5000);
-  assert.equal(asked.length, 4, "it has not changed since");
+  assert.equal(requests.length, 4, "it has not changed since");
   stop();
 });
 
@@ -106,11 +106,11 @@ test("a table that is refused for good is asked for once, another again", async 
     await pass(5000);
     proceed(done);
   }
-  assert.deepEqual([asked.length, tableOf(run.value)?.problem], [1, "No."]);
+  assert.deepEqual([requests.length, tableOf(run.value)?.problem], [1, "No."]);
   refusedWith = 503;
   askAgain();
   for (let n = 0; n < 3; n += 1) await pass(5000);
-  assert.deepEqual([asked.length, tableOf(run.value)?.problem], [5, "No."]);
+  assert.deepEqual([requests.length, tableOf(run.value)?.problem], [5, "No."]);
   refusedWith = 0;
   await pass(5000);
   await pass(5000);

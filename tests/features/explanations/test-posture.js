@@ -22,7 +22,7 @@ const NODE = "/world/run/lane1/grid/posture";
 /** @type {Message[]} */
 let drawn = [];
 /** @type {URL[]} */
-let asked = [];
+let requests = [];
 let stop = () => {};
 const { fetch } = globalThis;
 
@@ -58,10 +58,10 @@ beforeEach(() => {
   options.value = OPTIONS;
   chosenMoment.value = null;
   chosenLane.value = null;
-  [drawn, asked] = [[], []];
+  [drawn, requests] = [[], []];
   drawHere.value = (messages) => drawn.push(...messages);
   globalThis.fetch = (address) => {
-    asked.push(new URL(String(address)));
+    requests.push(new URL(String(address)));
     return Promise.resolve(encoded([{ type: "FrameMessage", name: NODE, props: {} }]));
   };
   stop = followChosenState();
@@ -86,14 +86,14 @@ test("a chosen state is drawn in the 3D view until it is given up", async () => 
   const race = stageRace();
   chooseState([0, 3, 1], [2, 2]);
   await settled();
-  assert.match(asked[0].pathname, new RegExp(`/runs/${race.id}/replay/posture$`));
-  assert.deepEqual(Object.fromEntries(asked[0].searchParams), {
+  assert.match(requests[0].pathname, new RegExp(`/runs/${race.id}/replay/posture$`));
+  assert.deepEqual(Object.fromEntries(requests[0].searchParams), {
     lane: "1", cells: "0,3,1", time_s: "3.5", clock: "paper",
   });
   assert.deepEqual(drawn.map(({ type }) => type), ["FrameMessage"]);
   show(race.id, 3.7);
   await settled();
-  assert.equal(asked.length, 1, "the grid carries the ghost along");
+  assert.equal(requests.length, 1, "the grid carries the ghost along");
   giveUpState();
   assert.deepEqual(drawn.at(-1), { type: "RemoveSceneNodeMessage", name: NODE, owner: "" });
 });
@@ -121,10 +121,10 @@ test("there is no ghost without a foot grid or a 3D view", async () => {
   chooseState([0, 0, 0], [0, 1]);
   await settled();
   assert.match(String(whyNoGhost.value), /before the first step/);
-  assert.deepEqual(asked, []);
+  assert.deepEqual(requests, []);
   show(race.id, 1);
   await settled();
-  assert.equal(asked.length, 1);
+  assert.equal(requests.length, 1);
   drawHere.value = null;
   assert.match(String(whyNoGhost.value), /not loaded/);
 });
@@ -140,5 +140,5 @@ test("a cell clicked in the scene is that move in the present state, of the lane
   assert.deepEqual(chosenState.value, expected);
   assert.equal(chosenMoment.value, null, "it follows the stage");
   assert.equal(clickedCell.value, null);
-  assert.deepEqual(asked, []);
+  assert.deepEqual(requests, []);
 });

@@ -77,9 +77,9 @@ const settled = () => new Promise((resolve) => {
 test("the table of a lane's training is asked for once, however far its race is", async () => {
   mock.timers.enable({ apis: ["setTimeout"] });
   /** @type {string[]} */
-  const asked = [];
+  const requests = [];
   globalThis.fetch = (address) => {
-    asked.push(String(address));
+    requests.push(String(address));
     return Promise.resolve(new Response("{}"));
   };
   const lanes = [{ agent: "learner", training_id: "t1" }];
@@ -92,7 +92,7 @@ test("the table of a lane's training is asked for once, however far its race is"
     for (let turn = 0; turn < 3; turn += 1) await settled();
     mock.timers.tick(1000);
   }
-  assert.equal(asked.length, 1);
+  assert.equal(requests.length, 1);
   stop();
   mock.timers.reset();
 });

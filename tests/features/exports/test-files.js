@@ -14,7 +14,7 @@ test("exports are those that the server names: downloads, what it renders, and w
   assert.deepEqual(walkFiles(makeRun({ started_at: null })), [], "nothing was recorded of an imported table");
   assert.deepEqual(rendered().map(({ title }) => title), ["Film"]);
   assert.deepEqual(notInstalled(), [["pip install p", ["Joints (Parquet)"]]]);
-  const lacking = OPTIONS.exports.map((one) => ({ ...one, install: "pip install p" }));
+  const lacking = OPTIONS.exports.map((format) => ({ ...format, install: "pip install p" }));
   options.value = { ...OPTIONS, exports: lacking };
   assert.deepEqual(rendered(), []);
   assert.deepEqual(notInstalled(), [["pip install p", lacking.map(({ title }) => title)]]);

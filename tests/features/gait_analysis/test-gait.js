@@ -66,8 +66,8 @@ test("legs are drawn pair by pair", () => {
   const legs = gait.pairs.flat().length;
   assert.deepEqual(legsInOrder(run, legs).map(([leg]) => leg), gait.pairs.flat());
   assert.deepEqual(legsInOrder(run, legs).map(([, pair]) => pair), gait.pairs.flatMap((_, n) => [n + 1, n + 1]));
-  const own = makeRun({ config: { gait: { right_leg: 1 } } });
-  assert.deepEqual(legsInOrder(own, 2), [[1, null], [2, null]]);
+  const unnamed = makeRun({ config: { gait: { right_leg: 1 } } });
+  assert.deepEqual(legsInOrder(unnamed, 2), [[1, null], [2, null]]);
 });
 
 test("a foot is in the air between its stances", () => {
@@ -90,8 +90,8 @@ test("lines have their units, and axes that do not magnify noise", () => {
 });
 
 test("figures are told with their units, and a dash stands where there are none", () => {
-  const told = (/** @type {GaitFigures} */ figures) => FIGURES.map(([name, , words]) => [name, words(figures)]);
-  const words = Object.fromEntries(told(FIGURES_OF_A_WALK));
+  const texts = (/** @type {GaitFigures} */ figures) => FIGURES.map(([name, , words]) => [name, words(figures)]);
+  const words = Object.fromEntries(texts(FIGURES_OF_A_WALK));
   assert.equal(words.Speed, "0.050\u00a0m/s");
   assert.equal(words["Duty factor"], "0.75");
   assert.equal(words.Cycle, "2 steps, 0.64\u00a0s");
@@ -100,7 +100,7 @@ test("figures are told with their units, and a dash stands where there are none"
   assert.equal(words.Roll, "0.0°");
   assert.equal(words["Largest torque"], "0.60 of 1.5\u00a0N·m");
   assert.equal(words["Cost of transport"], null);
-  const without = Object.fromEntries(told({ ...FIGURES_OF_A_WALK, effort: null, cycle: null }));
+  const without = Object.fromEntries(texts({ ...FIGURES_OF_A_WALK, effort: null, cycle: null }));
   assert.equal(without.Energy, null);
   assert.equal(without.Cycle, "none");
   assert.equal(rangeInWords([-2, -1], 0, "°"), "−2 to −1°");
@@ -118,12 +118,12 @@ test("an error is shown, and the request repeated if that can be of use", async 
   connection.value = "live";
   applyEvent("snapshot", { role: "operator", runs: [TRAINING], stage: { ...STAGE, run_id: "training" }, scene: null });
   /** @type {(string | null)[]} */
-  const asked = [];
+  const requests = [];
   const answers = [[503, { detail: "Busy." }], [200, { part: "practice", step_s: 1, lanes: [] }],
     [409, { detail: "Not evaluated." }]];
   globalThis.fetch = (address) => {
-    asked.push(new URL(String(address)).searchParams.get("part"));
-    const [status, body] = answers[asked.length - 1];
+    requests.push(new URL(String(address)).searchParams.get("part"));
+    const [status, body] = answers[requests.length - 1];
     return Promise.resolve(new Response(JSON.stringify(body), { status: Number(status) }));
   };
   const pass = async () => {
@@ -142,7 +142,7 @@ test("an error is shown, and the request repeated if that can be of use", async 
   part.value = "evaluation";
   for (let n = 0; n < 3; n += 1) await pass();
   assert.deepEqual([problem.value, analysis.value], ["Not evaluated.", null]);
-  assert.deepEqual(asked, ["practice", "practice", "evaluation"]);
+  assert.deepEqual(requests, ["practice", "practice", "evaluation"]);
   part.value = "practice";
   assert.equal(problem.value, null, "it is about the other part");
   stop();

@@ -15,11 +15,11 @@ import { makeRun, makeSceneLane, makeStage, OPTIONS } from "../../page/options.j
 
 const START = makeStage().presentation;
 /** What the server was told. @type {Presentation[]} */
-let told = [];
+let sent = [];
 globalThis.fetch = (_, { body = "" } = {}) => {
-  const asked = JSON.parse(String(body)).presentation;
-  told.push(asked);
-  return Promise.resolve(new Response(JSON.stringify(makeStage({ presentation: asked }))));
+  const { presentation: sentPresentation } = JSON.parse(String(body));
+  sent.push(sentPresentation);
+  return Promise.resolve(new Response(JSON.stringify(makeStage({ presentation: sentPresentation }))));
 };
 /** @type {import("@preact/signals").Signal<number | null>} */
 const open = signal(null);
@@ -43,7 +43,7 @@ beforeEach(() => {
   read({ search: "", hash: "" });
   open.value = null;
   showCard({});
-  told = [];
+  sent = [];
 });
 
 test("links present the page, or make it the remote", () => {
@@ -61,15 +61,15 @@ test("cards are turned within the deck, and each begins without an explanation",
   turnPage(-1);
   turnPage(1);
   await settle();
-  assert.deepEqual(told, [{ ...START, card: 1 }]);
+  assert.deepEqual(sent, [{ ...START, card: 1 }]);
   showCard({ card: 1, shows_why: true });
   turnPage(-1);
   turnPage(1);
   await settle();
-  assert.deepEqual(told.at(-1), { ...START, card: 2 });
+  assert.deepEqual(sent.at(-1), { ...START, card: 2 });
   showCard({ card: cards.value.length });
   turnPage(1);
-  assert.equal(told.length, 2);
+  assert.equal(sent.length, 2);
 });
 
 test("the code is large, small or none; the rest is on or off", async () => {
@@ -88,7 +88,7 @@ test("only operators tell it", async () => {
   turnPage(1);
   tell({ is_blank: true });
   await settle();
-  assert.deepEqual(told, []);
+  assert.deepEqual(sent, []);
 });
 
 test("a page that is presented follows it, and other pages do not", () => {
@@ -120,14 +120,14 @@ test("by the end of the first race the code is small, once", async () => {
     },
   });
   showAt(15);
-  assert.deepEqual(told, []);
+  assert.deepEqual(sent, []);
   showAt(16);
   await settle();
-  assert.deepEqual(told.map(({ code }) => code), ["small"]);
+  assert.deepEqual(sent.map(({ code }) => code), ["small"]);
   showAt(1);
   tell({ code: "large" });
   await settle();
   showAt(16);
   await settle();
-  assert.deepEqual(told.map(({ code }) => code), ["small", "large"], "who wants it large again has it");
+  assert.deepEqual(sent.map(({ code }) => code), ["small", "large"], "who wants it large again has it");
 });

@@ -21,12 +21,12 @@ const legAt = (angle) => ({
   },
 });
 /** What the server answers: each request's body is kept. @type {any[]} */
-const asked = [];
+const requests = [];
 /** @type {(body: any) => [number, any]} */
 let answer;
 const OWN = { right_leg: 1, left_leg: 2, groups: [[1, 3], [2, 4]] };
 /** @type {(changes?: object) => any} */
-const known = (changes = {}) => ({
+const preview = (changes = {}) => ({
   built: BUILT, legs: ANGLES.map(legAt), forward_deg: 90, gait: OWN, groups: [], better: null, tips: false,
   table_fits: true, out_of_reach: null, ...changes,
 });
@@ -41,8 +41,8 @@ async function open() {
 
 Object.assign(globalThis, {
   fetch: async (/** @type {URL} */ _url, /** @type {{ body: string }} */ { body }) => {
-    asked.push(JSON.parse(body));
-    const [status, content] = answer(asked.at(-1));
+    requests.push(JSON.parse(body));
+    const [status, content] = answer(requests.at(-1));
     const text = await Promise.resolve(JSON.stringify(content));
     return { ok: status < 400, status, text: () => Promise.resolve(text) };
   },
@@ -51,8 +51,8 @@ editor.followBody();
 
 beforeEach(() => {
   bodyIsOpen.value = false;
-  asked.length = 0;
-  answer = () => [200, known()];
+  requests.length = 0;
+  answer = () => [200, preview()];
   options.value = OPTIONS;
   connection.value = "live";
   page.form.value = new URLSearchParams();
@@ -66,7 +66,7 @@ const parts = (leg) => partsOf(/** @type {any} */ (editor.body.value), leg);
 
 test("it begins with the robot of the form; unchanged it leaves the form as it is", async () => {
   await open();
-  assert.deepEqual([asked[0].robot, asked[0].gait], ["dog", "wave"]);
+  assert.deepEqual([requests[0].robot, requests[0].gait], ["dog", "wave"]);
   assert.equal(editor.canUse.value, true);
   editor.useBody();
   assert.deepEqual([form.value.robot, bodyIsOpen.value], ["dog", false]);
@@ -115,7 +115,7 @@ test("what is typed stays; no number holds the use of the body, and is undone fi
 
 test("a gait that does not divide the legs is replaced by its groups, and that is told", async () => {
   await open();
-  answer = ({ gait }) => (gait === "wave" ? [422, { detail: "No wave." }] : [200, known({ forward_deg: 100 })]);
+  answer = ({ gait }) => (gait === "wave" ? [422, { detail: "No wave." }] : [200, preview({ forward_deg: 100 })]);
   editor.moveBy(1, { x_m: 0.005 });
   await settled();
   assert.deepEqual(editor.consequences.value, [
@@ -138,7 +138,7 @@ test("legs that do not reach their grid are told together, each at its leg", asy
   await open();
   const legs = ANGLES.map(legAt).map((leg, number) =>
     ({ ...leg, leg: number + 1, out_of_reach: number < 2 ? `leg ${number + 1} cannot reach cell 1` : null }));
-  answer = () => [200, known({ legs, out_of_reach: "leg 1 cannot reach cell 1" })];
+  answer = () => [200, preview({ legs, out_of_reach: "leg 1 cannot reach cell 1" })];
   editor.slideTo("femur_m", 0.01);
   await settled();
   const [{ words, legs: at }] = editor.objectionsAt.value;
@@ -150,8 +150,8 @@ test("legs that do not reach their grid are told together, each at its leg", asy
 test("fields have their names of the editor in what the server says, and reach is told by the grid", () => {
   assert.equal(inOwnWords("choose a smaller grid_side_m, a lower step_height_m, or its own foot_out_m"),
     "Choose a smaller Grid side, a lower step height, or its own foot from joint");
-  assert.equal(reachInWords(known({ largest_side_m: null, safe_side_m: null })), "");
-  assert.equal(reachInWords(known({ largest_side_m: 0.125, safe_side_m: 0.035 })),
+  assert.equal(reachInWords(preview({ largest_side_m: null, safe_side_m: null })), "");
+  assert.equal(reachInWords(preview({ largest_side_m: 0.125, safe_side_m: 0.035 })),
     "Its feet reach a foot grid of at most 0.125\u00a0m; up to 0.035\u00a0m no step is ever ruled out.");
 });
 

@@ -11,18 +11,18 @@ const SHARED = {
   coxa_m: 0.05, femur_m: 0.08, tibia_m: 0.13, torso_radius_m: 0.1, torso_length_m: null, torso_width_m: null,
 };
 /** @type {(angle: number, own?: object) => any} */
-const legAt = (angle, own = {}) => ({
+const legAt = (angle, fields = {}) => ({
   built: {
     x_m: 0.1 * Math.cos((angle * Math.PI) / 180), y_m: 0.1 * Math.sin((angle * Math.PI) / 180), z_m: 0, yaw_deg: angle,
-    foot_out_m: 0.15, coxa_m: 0.05, femur_m: 0.08, tibia_m: 0.13, ...own,
+    foot_out_m: 0.15, coxa_m: 0.05, femur_m: 0.08, tibia_m: 0.13, ...fields,
   },
 });
 /** @type {(angles: number[], groups: number[][], forward?: number) => any} */
-const known = (angles, groups, forward_deg = 90) => ({
+const preview = (angles, groups, forward_deg = 90) => ({
   built: SHARED, legs: angles.map((angle) => legAt(angle)), forward_deg, gait: { right_leg: 1, left_leg: 2, groups },
 });
-const FOUR = known([45, 135, 225, 315], [[1, 3], [2, 4]]);
-const RING = known([0, 60, 120, 180, 240, 300], [[1, 4], [2, 5], [3, 6]], 30);
+const FOUR = preview([45, 135, 225, 315], [[1, 3], [2, 4]]);
+const RING = preview([0, 60, 120, 180, 240, 300], [[1, 4], [2, 5], [3, 6]], 30);
 
 test("a body that was opened makes the robot that was chosen, written out", () => {
   const body = openBody("dog", "trot", FOUR);
@@ -58,7 +58,7 @@ test("a leg's mirror image moves and turns with it, and takes its lengths", () =
 });
 
 test("a leg on the axis is its own image and stays there; one without an image has none", () => {
-  const body = openBody("stiff", "one-by-one", known([90, 210, 330, 20], [[1], [2], [3], [4]]));
+  const body = openBody("stiff", "one-by-one", preview([90, 210, 330, 20], [[1], [2], [3], [4]]));
   assert.deepEqual([1, 2, 4].map((leg) => mirrorOf(body, leg)), [1, 3, null]);
   const moved = changeLeg(body, 1, { x_m: 0.05, y_m: 0.12 }, 1);
   assert.deepEqual([partsOf(moved, 1).x_m, partsOf(moved, 1).y_m], [0, 0.12]);
@@ -90,7 +90,7 @@ test("a leg is drawn from its mount to its foot, and the picture has room for al
 });
 
 test("a pair is added at the sides of a long body; legs are numbered from the front right one", () => {
-  const long = known([61, 119, 241, 299], [[1, 3], [2, 4]]);
+  const long = preview([61, 119, 241, 299], [[1, 3], [2, 4]]);
   const { body, leg } = addLeg(openBody("dog", "trot", long), true, 12);
   assert.equal(body.legs.length, 6);
   assert.equal(leg, 6);
@@ -100,7 +100,7 @@ test("a pair is added at the sides of a long body; legs are numbered from the fr
 });
 
 test("a single leg goes into the widest gap; in front it moves forward to its neighbours", () => {
-  const wide = known([20, 160, 200, 340], [[1, 3], [2, 4]]);
+  const wide = preview([20, 160, 200, 340], [[1, 3], [2, 4]]);
   const { body, leg } = addLeg(openBody("dog", "trot", wide), false, 12);
   assert.equal(leg, 2);
   assert.deepEqual(body.gait, { right_leg: 1, left_leg: 3, groups: [[1, 4], [3, 5], [2]] });
@@ -117,6 +117,7 @@ test("a leg that is removed leaves its group, and takes its image along", () => 
   assert.deepEqual([five.legs.length, five.gait, five.own.groups],
     [5, "left-right-origin", [[1], [2, 4], [3, 5]]]);
   const four = removeLeg(body, 1, 2);
-  assert.deepEqual(four.own, { right_leg: 1, left_leg: 2, groups: [[3], [4], [2, 1]].map((one) => one.toSorted()) });
+  const groups = [[3], [4], [2, 1]].map((group) => group.toSorted());
+  assert.deepEqual(four.own, { right_leg: 1, left_leg: 2, groups });
   assert.ok(partsOf(four, 1).x_m > 0);
 });

@@ -53,12 +53,12 @@ test("a rank is a range where entries cannot be told apart", () => {
 
 test("those that cannot be told apart are named, and many of them counted", () => {
   const names = ["Greedy", "Keen Ant", "Shy Hare", "Bold Moth", "Calm Lynx", "An entry whose name has no end at all"];
-  const told = (/** @type {number[]} */ numbers) => notSeparable({ not_separable: numbers }, (n) => names[n]);
-  assert.equal(told([]), "");
-  assert.equal(told([0, 1]), "Greedy and Keen Ant");
-  assert.equal(told([0, 1, 2, 3]), "Greedy, Keen Ant, Shy Hare and Bold Moth", "no “1 others”");
-  assert.equal(told([0, 1, 2, 3, 4]), "Greedy, Keen Ant, Shy Hare and 2 others");
-  assert.equal(told([5]), "An entry whose name has…");
+  const words = (/** @type {number[]} */ numbers) => notSeparable({ not_separable: numbers }, (n) => names[n]);
+  assert.equal(words([]), "");
+  assert.equal(words([0, 1]), "Greedy and Keen Ant");
+  assert.equal(words([0, 1, 2, 3]), "Greedy, Keen Ant, Shy Hare and Bold Moth", "no “1 others”");
+  assert.equal(words([0, 1, 2, 3, 4]), "Greedy, Keen Ant, Shy Hare and 2 others");
+  assert.equal(words([5]), "An entry whose name has…");
 });
 
 test("distances have an interval, and failures are counted", () => {
@@ -100,12 +100,12 @@ test("what else may enter is told where anything else may", () => {
 });
 
 test("an entry is told by what differs from the agent's defaults", () => {
-  const made = (/** @type {Partial<EnteredAgent>} */ changes) =>
+  const title = (/** @type {Partial<EnteredAgent>} */ changes) =>
     entryInWords({ .../** @type {EnteredAgent} */ (entry().entry), ...changes }, RULES);
-  assert.equal(made({ settings: { alpha: 0.3, gamma: 0.9 } }), "Learner");
-  assert.equal(made({ settings: { alpha: 0.5 }, steps: 300 }), "Learner, α\u00a00.5, 300 steps");
-  assert.equal(made({ steps: 500 }), "Learner", "the whole budget is nothing special");
-  assert.equal(made({ table: "ab" }), "Learner, a trained table");
+  assert.equal(title({ settings: { alpha: 0.3, gamma: 0.9 } }), "Learner");
+  assert.equal(title({ settings: { alpha: 0.5 }, steps: 300 }), "Learner, α\u00a00.5, 300 steps");
+  assert.equal(title({ steps: 500 }), "Learner", "the whole budget is nothing special");
+  assert.equal(title({ table: "ab" }), "Learner, a trained table");
 });
 
 test("an entry whose name is hidden has its number, a reference the agent's title", () => {

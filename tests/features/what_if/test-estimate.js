@@ -10,11 +10,11 @@ import { OPTIONS } from "../../page/options.js";
 mock.timers.enable({ apis: ["setTimeout"] });
 
 /** @type {any[]} */
-let asked = [];
+let requests = [];
 let seconds = 0;
 let status = 200;
 globalThis.fetch = /** @type {any} */ ((/** @type {URL} */ { pathname }, /** @type {any} */ { body }) => {
-  asked.push([pathname, JSON.parse(body).lanes[0].training.steps]);
+  requests.push([pathname, JSON.parse(body).lanes[0].training.steps]);
   return Promise.resolve(new Response(JSON.stringify({ seconds, detail: "others wait" }), { status }));
 });
 
@@ -28,12 +28,12 @@ beforeEach(() => {
   role.value = "operator";
   connection.value = "live";
   page.form.value = new URLSearchParams();
-  asked = [];
+  requests = [];
 });
 
 test("a practice as by default is short, and nobody asks", async () => {
   await rest();
-  assert.deepEqual(asked, []);
+  assert.deepEqual(requests, []);
   assert.equal(raceEstimate.value, "");
 });
 
@@ -41,7 +41,7 @@ test("a long one is asked about once it has come to rest, and told in words", as
   seconds = 150;
   for (const steps of [5000, 50_000]) setField("steps", steps);
   await rest();
-  assert.deepEqual(asked, [["/api/v1/races/estimate", 50_000]]);
+  assert.deepEqual(requests, [["/api/v1/races/estimate", 50_000]]);
   assert.equal(raceEstimate.value, "Takes about 3 min on this machine.");
   setField("steps", 60_000);
   assert.equal(raceEstimate.value, "", "that was another one");
@@ -61,12 +61,12 @@ test("it is asked again while other estimates wait, unless the form has changed"
   await rest();
   await rest();
   assert.equal(raceEstimate.value, "Takes about 3 min on this machine.");
-  assert.deepEqual(asked.map(([, steps]) => steps), [70_000, 70_000, 80_000]);
+  assert.deepEqual(requests.map(([, steps]) => steps), [70_000, 70_000, 80_000]);
 });
 
 test("a form that is not valid, or of a spectator, is not asked about", async () => {
   role.value = "spectator";
   setField("steps", 50_000);
   await rest();
-  assert.deepEqual(asked, []);
+  assert.deepEqual(requests, []);
 });

@@ -105,8 +105,8 @@ function One({ name, bounds, card, onBounds }) {
 function Names({ name, bounds, onBounds }) {
   const chosen = bounds.choices ?? [];
   const toggle = (/** @type {string} */ choice) => {
-    const others = chosen.filter((/** @type {string} */ other) => other !== choice);
-    const now = chosen.includes(choice) ? others : [...chosen, choice];
+    const remaining = chosen.filter((/** @type {string} */ other) => other !== choice);
+    const now = chosen.includes(choice) ? remaining : [...chosen, choice];
     if (now.length > 0) onBounds({ choices: now });
   };
   return html`

@@ -46,8 +46,8 @@ function stateOf({ run, hasArrived }) {
   return hasArrived ? "arrived" : "arriving";
 }
 
-/** @param {KnownOwn} known */
-export function participantRunNarrative(known) {
-  const state = stateOf(known);
-  return { state, ...TABLE[state](known) };
+/** @param {KnownOwn} facts */
+export function participantRunNarrative(facts) {
+  const state = stateOf(facts);
+  return { state, ...TABLE[state](facts) };
 }

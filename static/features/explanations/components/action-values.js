@@ -13,13 +13,13 @@ import { HexapodGlyph, html } from "../../../js/components/elements.js";
 const ABOUT = "Millimetres forward that it expects from moving a group of legs to a place, and from what follows";
 
 export function ActionValues() {
-  const known = scene.value?.action_values;
-  return known && html`
+  const values = scene.value?.action_values;
+  return values && html`
     <section class="panel action-values" aria-labelledby="action-values-title">
       <h3 id="action-values-title" title=${ABOUT}>Values in this state [mm]</h3>
-      <${Values} known=${known} />
-      ${known.visits && isAtLeast("study") && html`<${ValuesKey} />`}
-      ${isAtLeast("study") && html`<p class="next-move"><${NextMove} known=${known} /></p>`}
+      <${Values} known=${values} />
+      ${values.visits && isAtLeast("study") && html`<${ValuesKey} />`}
+      ${isAtLeast("study") && html`<p class="next-move"><${NextMove} known=${values} /></p>`}
     </section>
   `;
 }

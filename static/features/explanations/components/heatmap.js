@@ -51,8 +51,8 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
   const marked = rowOf(cells, shown);
   const column = move && marked !== null ? columnOf(move, shown) : null;
   const chosenRow = rowOf(chosen?.cells ?? null, shown);
-  const held = chosen && chosenRow !== null ? { row: chosenRow, column: columnOf(chosen.move, shown) } : null;
-  const at = read ?? held ?? { row: marked ?? 0, column: column ?? 0 };
+  const chosenCell = chosen && chosenRow !== null ? { row: chosenRow, column: columnOf(chosen.move, shown) } : null;
+  const at = read ?? chosenCell ?? { row: marked ?? 0, column: column ?? 0 };
   const place = { row: clamped(at.row, last.row), column: clamped(at.column, last.column) };
   const words = cellInWords(shown, place.row, place.column);
   /** @param {Place} cell */
@@ -77,11 +77,11 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
         <b>${sentence(words.move)}: ${words.worth}</b><span class="dim">, ${words.about}</span>
         <span class="dim heat-state">where ${words.state}</span>
       </p>
-      <${ChosenStateNote} chosen=${chosen} grid=${shown} isRead=${place.row === held?.row} onGiveUp=${giveUp} />
+      <${ChosenStateNote} chosen=${chosen} grid=${shown} isRead=${place.row === chosenCell?.row} onGiveUp=${giveUp} />
       <${Columns} shown=${shown} />
       <${Grid} shown=${shown} last=${last} place=${place} words=${words} marked=${marked} column=${column}
-        chosen=${chosen} held=${held} onPlace=${setRead} onChoose=${choose}
-        isChosen=${(read ?? held) !== null} />
+        chosen=${chosen} held=${chosenCell} onPlace=${setRead} onChoose=${choose}
+        isChosen=${(read ?? chosenCell) !== null} />
       <${Key} shown=${shown} />
     </div>
   `;
@@ -227,8 +227,8 @@ function scrollTo(scroller, row) {
  * @param {{ name: string, row: number, column?: number | null, last: Place }} props
  */
 function Frame({ name, row, column = null, last }) {
-  /** @param {number} part @param {number} all */
-  const share = (part, all) => `${(100 * part) / (all + 1)}%`;
+  /** @param {number} count @param {number} all */
+  const share = (count, all) => `${(100 * count) / (all + 1)}%`;
   const across = column === null
     ? { left: 0, width: "100%" }
     : { left: share(column, last.column), width: share(1, last.column) };

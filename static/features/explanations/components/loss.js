@@ -16,7 +16,7 @@ const NOT_AVAILABLE = 409;
 export function WhyLost() {
   const fold = useRef(/** @type {HTMLDetailsElement | null} */ (null));
   useEffect(followLoss, []);
-  const asked = lostLane.value;
+  const lane = lostLane.value;
   useEffect(() => {
     if (!isSought.value || !fold.current) return;
     isOpen.value = true;
@@ -24,13 +24,13 @@ export function WhyLost() {
     fold.current.querySelector("summary")?.focus({ preventScroll: true });
     // Without the answer the panel may be too short to be scrolled.
     isSought.value = !loss.value.answer && !loss.value.error;
-  }, [isSought.value, asked === null, loss.value]);
-  if (!asked) return null;
+  }, [isSought.value, lane === null, loss.value]);
+  if (!lane) return null;
   return html`
     <details class="fold why-lost" ref=${fold} open=${isOpen.value}
       onToggle=${(/** @type {{ target: HTMLDetailsElement }} */ { target }) => (isOpen.value = target.open)}>
       <summary>Why does it lose?</summary>
-      <${Answer} asked=${asked} />
+      <${Answer} asked=${lane} />
     </details>
   `;
 }

@@ -52,8 +52,8 @@ const TableTime = ({ wanted }) => wanted && html`
 
 /** @param {{ at: Moment, shown: StateTable }} props */
 function TableOfStates({ at, shown }) {
-  const told = explanation.value.answer;
-  const seen = told?.run_id === at.run_id ? told : null;
+  const { answer } = explanation.value;
+  const seen = answer?.run_id === at.run_id ? answer : null;
   const chosen = chosenState.value;
   const cells = chosen?.cells ?? seen?.observation;
   const index = cells ? stateIndex(cells, shown.cell_names.length) : null;

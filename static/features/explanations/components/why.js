@@ -17,22 +17,22 @@ import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
 export function Why() {
   useMoment();
   const at = moment.value;
-  const told = toldAbout(at);
+  const step = toldAbout(at);
   useEffect(() => {
-    moveTold.value = told ? wordsOf(told) : at && { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
-  }, [told, at?.step]);
+    moveTold.value = step ? wordsOf(step) : at && { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
+  }, [step, at?.step]);
   useEffect(() => () => (moveTold.value = null), []);
   if (!at) return html`<p class="dim">Once a run is on stage, each of its steps is explained here.</p>`;
   const { error, again } = explanation.value;
   return html`
-    <section class="why-tab" aria-label="Explanation" aria-busy=${told && told.step !== at.step ? "true" : "false"}>
+    <section class="why-tab" aria-label="Explanation" aria-busy=${step && step.step !== at.step ? "true" : "false"}>
       <${Navigator} at=${at} />
       <${WhyLost} />
       <${Trouble} error=${error} again=${again} />
       ${at.step === 0 && html`<p class="dim">It stands on the start line. Its first step comes next.</p>`}
       ${isFollowing.value && isAtLeast("study") && html`<${ActionValues} />`}
-      ${told && html`<${ExplainedStep} told=${told} isFull=${isAtLeast("study")} />`}
-      ${!told && !error && at.step > 0 && html`<${Waiting} />`}
+      ${step && html`<${ExplainedStep} told=${step} isFull=${isAtLeast("study")} />`}
+      ${!step && !error && at.step > 0 && html`<${Waiting} />`}
     </section>
   `;
 }
@@ -48,9 +48,9 @@ function toldAbout(at) {
   return answer.run_id === at.run_id && (answer.lane ?? 0) === at.lane ? answer : null;
 }
 
-/** @param {Explanation} told */
-const wordsOf = (told) => ({
-  title: sentence(moveInWords(told.action, told)), reason: reasonOf(told), color: agentOf(told.agent).color,
+/** @param {Explanation} step */
+const wordsOf = (step) => ({
+  title: sentence(moveInWords(step.action, step)), reason: reasonOf(step), color: agentOf(step.agent).color,
 });
 
 /** What the step brought, and what the move is worth since. @param {Explanation} told */

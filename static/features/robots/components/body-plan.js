@@ -110,11 +110,11 @@ function Mount({ shown, leg, half_m, onDown, onMove, onUp }) {
   const { mount: [x, y] } = drawnLeg(shown, leg);
   /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {
-    const [part, sign] = KEYS[event.key] ?? [];
-    if (!part || !sign || event.ctrlKey || event.altKey || event.metaKey) return;
+    const [field, sign] = KEYS[event.key] ?? [];
+    if (!field || !sign || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     const { place_m, turn_deg } = event.shiftKey ? STEPS.near : STEPS.far;
-    moveBy(leg, { [part]: sign * (part === "yaw_deg" ? turn_deg : place_m) });
+    moveBy(leg, { [field]: sign * (field === "yaw_deg" ? turn_deg : place_m) });
   };
   const isChosen = chosenLeg.value === leg;
   return html`
@@ -157,7 +157,7 @@ function Drawing({ shown, half_m, preview }) {
 
 /** @param {{ shown: Body, scale: number }} props */
 function Torso({ shown, scale }) {
-  const size = (/** @type {string} */ part) => scale * (sharedPart(shown, part) ?? 0);
+  const size = (/** @type {string} */ field) => scale * (sharedPart(shown, field) ?? 0);
   if (!isBox(shown)) return html`<circle class="torso" r=${size("torso_radius_m")} />`;
   const [width, length] = [size("torso_width_m"), size("torso_length_m")];
   return html`
