@@ -81,7 +81,7 @@ def test_an_unknown_name_is_answered_with_the_functions() -> None:
 
 def test_every_agent_is_there_by_its_class() -> None:
     assert {name for name in dir(hx) if getattr(hx, name) in BUILT_IN.values()} == {
-        one.__name__ for one in BUILT_IN.values()
+        agent_class.__name__ for agent_class in BUILT_IN.values()
     }
 
 
