@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from fastapi import APIRouter
 from prometheus_client.metrics_core import Metric
-from pydantic import BaseModel
 from sqlalchemy import Column, ColumnElement, MetaData, not_, select
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute
 
+from app.answer import Answer
 from app.jobs.queue import Owner
 from app.jobs.submissions import Start
 from app.setting_fields import PREFIX
@@ -56,7 +56,7 @@ class Feature:
             robot is not deleted, also while the feature is left out.
         damage_advice: by name of its tables, what helps against damaged rows.
         state_events: names of its events of which only the newest counts.
-        event_bodies: models of the data of its events, by the event's name.
+        event_bodies: records of the data of its events, by the event's name.
         stage_members: records that each stage keeps for it, by their name in the stage's state:
             operators set them by `PUT /stage`, who watches is told of them. They begin with their
             defaults.
@@ -74,7 +74,7 @@ class Feature:
     robot_users: ClassVar[Mapping[str, Sequence[Column[Any]]]] = {}
     damage_advice: ClassVar[Mapping[str, str]] = {}
     state_events: ClassVar[Collection[str]] = ()
-    event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {}
+    event_bodies: ClassVar[Mapping[str, type[Answer]]] = {}
     stage_members: ClassVar[Mapping[str, type[Record]]] = {}
     option_types: ClassVar[Mapping[str, Any]] = {}
     page: ClassVar[Path | None] = None

@@ -7,48 +7,22 @@ Services build responses from plain types, which are sent unvalidated; these mod
 time only to describe them. Tests validate real responses against the models.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema
+from pydantic import Field
 
+from app.answer import Answer, Count
 from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
 from hexapods.domain.disturbance_documents import AnyDisturbance
-from hexapods.domain.records import described_attributes, summary_of
 from hexapods.domain.settings import Value
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import LaneConfig, PlanningModel
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import RaceResult, TrainingResult
-
-Count = Annotated[int, Field(ge=0)]
-
-
-class Answer(BaseModel):
-    """Base class of response objects; forbids additional members.
-
-    Their docstrings describe them and their members, as those of a `Record`.
-    """
-
-    model_config = ConfigDict(extra="forbid")
-
-    @classmethod
-    def __get_pydantic_json_schema__(
-        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        shape = handler.resolve_ref_schema(described := handler(schema))
-        shape["description"] = summary_of(cls)
-        for name, about in described_attributes(cls).items():
-            member = shape["properties"].get(name, {"$ref": ""})
-            if "$ref" not in member:
-                member.setdefault("description", about)
-        return described
-
 
 Settings = Annotated[dict[str, Value], Field(description="settings of the agent, by name")]
 
@@ -121,7 +95,7 @@ class Change(Answer):
 
     step: Count
     pace: float | Literal["max"] | None = None
-    settings: Settings = Field(default_factory=dict)
+    settings: Settings = field(default_factory=dict)
     disturbance: AnyDisturbance | None = None
 
 
@@ -233,23 +207,3 @@ class ComparisonView(Answer):
     chosen: SeedsView
     default: SeedsView
     compute_s: float
-
-
-class SpectatorsView(Answer):
-    """Spectators' address with its QR code, or the reason why there is none.
-
-    Attributes:
-        qr_code: SVG image as a data URI.
-    """
-
-    address: str | None
-    qr_code: str | None
-    reason: str
-    watching: Count
-
-
-class HealthView(Answer):
-    """Status and version of the server."""
-
-    status: Literal["ok", "ready"]
-    version: str

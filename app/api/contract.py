@@ -10,7 +10,7 @@ from copy import deepcopy
 from typing import Any
 
 from fastapi import FastAPI
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from app.api.cookies import NAME
 from app.api.event_answers import event_bodies
@@ -178,7 +178,9 @@ def _completed(
     schemas = components.setdefault("schemas", {})
     # FastAPI finds neither: routes do not declare errors, and events are sent as text.
     for name, model in (("Problem", ProblemDetails), ("EventBodies", event_bodies(features))):
-        described = model.model_json_schema(ref_template=_REFERENCE, mode="serialization")
+        described = TypeAdapter[Any](model).json_schema(
+            ref_template=_REFERENCE, mode="serialization"
+        )
         schemas |= described.pop("$defs")
         schemas[name] = described
     for feature in features:

@@ -1,18 +1,13 @@
 """Response models of `/events`: the data of each server-sent event; see `answers`."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import field
 from datetime import datetime
 from functools import cache
-from typing import Annotated, Any, Literal
+from typing import Any, ClassVar, Literal
 
-from pydantic import Field, create_model
-
-from app.api.answers import (
-    Answer,
-    Count,
-    Settings,
-    StageView,
-)
+from app.answer import Answer, Count, extended
+from app.api.answers import Settings, StageView
 from app.api.recorded_answers import Evaluation
 from app.api.run_views import AnyRunView, KindName
 from app.feature import Feature
@@ -146,7 +141,7 @@ class SnapshotView(Answer):
     runs: list[ListedRunView]
     stage: StageView
     scene: SceneView
-    evaluations: list[Evaluation] = Field(default_factory=list)
+    evaluations: list[Evaluation] = field(default_factory=list)
 
 
 class DeletedRun(Answer):
@@ -175,7 +170,7 @@ class RatesEvent(Answer):
     run_id: str
     step: Count
     pace: float | Literal["max"] | None = None
-    settings: Settings = Field(default_factory=dict)
+    settings: Settings = field(default_factory=dict)
 
 
 class ViewersEvent(Answer):
@@ -194,9 +189,11 @@ class RobotsEvent(Answer):
 class EventBodies(Answer):
     """Data of each server-sent event of the core, by the event's name."""
 
+    json_names: ClassVar[Mapping[str, str]] = {"run_deleted": "run-deleted"}
+
     snapshot: SnapshotView
     run: ListedRunView
-    run_deleted: Annotated[DeletedRun, Field(alias="run-deleted")]
+    run_deleted: DeletedRun
     evaluation: EvaluationEvent
     reference: ReferenceEvent
     rates: RatesEvent
@@ -208,22 +205,15 @@ class EventBodies(Answer):
 
 @cache
 def stage_view(features: tuple[type[Feature], ...]) -> type[StageView]:
-    """Return the model of the stage's state, with what it keeps for features."""
-    members: dict[str, Any] = {
-        name: (kind, ...) for feature in features for name, kind in feature.stage_members.items()
-    }
-    return create_model("StageView", __base__=StageView, __doc__=StageView.__doc__, **members)
+    """Return the record of the stage's state, with what it keeps for features."""
+    kinds = {name: kind for feature in features for name, kind in feature.stage_members.items()}
+    return extended(StageView, kinds)
 
 
 def event_bodies(features: Iterable[type[Feature]]) -> type[EventBodies]:
     """Return `EventBodies` with the events of features, and with what the stage keeps for them."""
     features = tuple(features)
     stage = stage_view(features)
-    snapshot = create_model(
-        "SnapshotView", __base__=SnapshotView, __doc__=SnapshotView.__doc__, stage=(stage, ...)
-    )
-    bodies: dict[str, Any] = {"snapshot": (snapshot, ...), "stage": (stage, ...)}
-    bodies |= {
-        name: (body, ...) for feature in features for name, body in feature.event_bodies.items()
-    }
-    return create_model("EventBodies", __base__=EventBodies, __doc__=EventBodies.__doc__, **bodies)
+    bodies: dict[str, Any] = {"snapshot": extended(SnapshotView, {"stage": stage}), "stage": stage}
+    bodies |= {name: body for feature in features for name, body in feature.event_bodies.items()}
+    return extended(EventBodies, bodies)

@@ -1,6 +1,7 @@
 """Probes of liveness and readiness, and metrics for Prometheus, collected at each scrape."""
 
 from collections.abc import Iterable
+from typing import Literal
 
 from fastapi import Request
 from prometheus_client import (
@@ -17,13 +18,14 @@ from prometheus_client.metrics_core import (
     Metric,
 )
 from prometheus_client.registry import Collector
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
-from app.api.answers import HealthView
+from app.answer import Answer
 from app.api.contract import TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.policy import PUBLIC, WATCH, api_router, policy
 from app.api.problems import problem
+from app.api.record_response import RecordResponse
 from app.api.work import PROBE
 from app.events.damage import damage_counts
 from app.storage.run import STATES
@@ -33,21 +35,28 @@ from hexapods.version import __version__
 router = api_router(tags=["health"])
 
 
-@router.get("/healthz", response_model=HealthView, summary="Liveness probe")
+class HealthView(Answer):
+    """Status and version of the server."""
+
+    status: Literal["ok", "ready"]
+    version: str
+
+
+@router.get("/healthz", summary="Liveness probe")
 @policy(access=PUBLIC, work=PROBE)
-async def get_health() -> Response:
+async def get_health() -> RecordResponse[HealthView]:
     """Return 200 as long as the server responds at all."""
-    return JSONResponse({"status": "ok", "version": __version__})
+    return RecordResponse(HealthView(status="ok", version=__version__))
 
 
-@router.get("/readyz", response_model=HealthView, summary="Readiness probe")
+@router.get("/readyz", summary="Readiness probe")
 @policy(access=PUBLIC, work=PROBE)
-def get_readiness(services: ServicesDep) -> Response:
+def get_readiness(services: ServicesDep) -> RecordResponse[HealthView] | Response:
     """Return 503 with the reason while something that runs need is unavailable."""
     trouble = _unready_reason(services)
     if trouble is not None:
         return problem(503, trouble, headers={"Retry-After": "1"})
-    return JSONResponse({"status": "ready", "version": __version__})
+    return RecordResponse(HealthView(status="ready", version=__version__))
 
 
 def _unready_reason(services: Services) -> str | None:

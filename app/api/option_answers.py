@@ -2,7 +2,8 @@
 
 from pydantic import BaseModel, ConfigDict
 
-from app.api.answers import Answer, Count, Settings
+from app.answer import Answer, Count
+from app.api.answers import Settings
 from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.robot import AnyRobot

@@ -3,13 +3,12 @@
 import logging
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any
 
 from fastapi import APIRouter, Request
-from pydantic import create_model
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import Answer
+from app.answer import extended
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.descriptions import MAX_RUN_IDS
@@ -49,7 +48,6 @@ from hexapods.runs.race_config import MAX_LANES
 from hexapods.shows.scene_spec import PAPERS_LANES
 from hexapods.version import __version__
 
-A = TypeVar("A", bound=Answer)
 _DEFAULTS = "defaults."
 
 _logger = logging.getLogger(__name__)
@@ -58,16 +56,10 @@ _logger = logging.getLogger(__name__)
 def options_view(features: Iterable[type[Feature]]) -> type[OptionsView]:
     """Return the model of the options, with what features add to them."""
     types = [item for feature in features for item in feature.option_types.items()]
-    defaults = [(name, kind) for name, kind in types if name.startswith(_DEFAULTS)]
-    added = [item for item in types if item not in defaults]
-    in_defaults = [(name.removeprefix(_DEFAULTS), kind) for name, kind in defaults]
-    return _extended(OptionsView, [*added, ("defaults", _extended(DefaultsView, in_defaults))])
-
-
-def _extended(model: type[A], members: Iterable[tuple[str, Any]]) -> type[A]:
-    """Return a model of the same name with further members."""
-    fields: dict[str, Any] = {name: (kind, ...) for name, kind in members}
-    return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
+    defaults = {name: kind for name, kind in types if name.startswith(_DEFAULTS)}
+    added = {name: kind for name, kind in types if name not in defaults}
+    in_defaults = {name.removeprefix(_DEFAULTS): kind for name, kind in defaults.items()}
+    return extended(OptionsView, {**added, "defaults": extended(DefaultsView, in_defaults)})
 
 
 def option_routes(features: Sequence[type[Feature]]) -> APIRouter:

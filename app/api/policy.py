@@ -22,6 +22,7 @@ from starlette.responses import RedirectResponse
 from starlette.routing import BaseRoute, Match, Mount, Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.record_response import response_model
 from app.api.stage_paths import path_of
 from app.api.work import OTHER, Work
 
@@ -193,12 +194,14 @@ class GuardedRoute(APIRoute):
     """
 
     def __init__(self, path: str, endpoint: Callable[..., Any], **options: Any) -> None:
-        """Create a route.
+        """Create a route; its response model is the record that the endpoint returns.
 
         Raises:
             MissingPolicy: if there is no policy on the endpoint.
         """
         self.policy = _policy_on(endpoint, path)
+        if (model := response_model(endpoint)) is not None:
+            options["response_model"] = model
         super().__init__(path, endpoint, **options)
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from app.api.answers import Answer, Count
+from app.answer import Answer, Count
 from hexapods.domain.gait import AnyGait
 from hexapods.runs.clocks import Clock
 from hexapods.shows.show import MarkKind

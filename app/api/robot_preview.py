@@ -6,12 +6,11 @@ It is the core's, as it is told of any robot: one that is built in, stored, or i
 from typing import Any
 
 from pydantic import create_model
-from starlette.responses import JSONResponse, Response
 
 from app.api.fields import Body, record_fields
 from app.api.policy import QUESTION, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.work import ANALYSIS
-from hexapods.domain.records import to_json
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
@@ -26,10 +25,9 @@ _PreviewBody: Any = create_model(
 @router.post(
     "/preview",
     summary="Tell support, reach, states and speed of a robot before it walks",
-    response_model=Preview,
 )
 @policy(access=QUESTION, work=ANALYSIS)
-def preview_robot(body: _PreviewBody) -> Response:
+def preview_robot(body: _PreviewBody) -> RecordResponse[Preview]:
     """Return what follows from robot, gait and foot grid; nothing is simulated.
 
     `margin_m` below 0 means that it tips; `better` then has groups with which it stands. Without
@@ -37,4 +35,4 @@ def preview_robot(body: _PreviewBody) -> Response:
     of groups, w their shares of the feet.
     """
     walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
-    return JSONResponse(to_json(preview(walk)))
+    return RecordResponse(preview(walk))

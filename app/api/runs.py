@@ -11,6 +11,7 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
     DeletedView,
+    KeptRun,
     Page,
     RunView,
 )
@@ -19,14 +20,14 @@ from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep, StartReque
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_RUN_IDS, MAX_SEARCH, VALID
 from app.api.fields import RunId
 from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
-from app.api.recorded_answers import CurvesView
+from app.api.record_response import RecordResponse
+from app.api.recorded_answers import CurvesView, ThinnedCurve
 from app.api.run_views import AnyRunView, KindName, RunPage
 from app.api.schemas import AnnotationBody
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
 from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
-from app.storage.json_text import finite
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
 from app.storage.run_kind import with_article
 from hexapods.domain.text import MAX_TAG
@@ -119,44 +120,47 @@ def list_runs(
     return _page(services, listing._replace(kind=kind))
 
 
-@router.delete("", summary="Delete runs that have ended", response_model=DeletedView)
+@router.delete("", summary="Delete runs that have ended")
 @policy(access=OWN_RUNS)
-def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
+def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[DeletedView]:
     """Delete each run that can be deleted; the answer names the others, and why they are kept."""
-    return JSONResponse(delete_each(services, ids))
+    return RecordResponse(delete_each(services, ids))
 
 
-def delete_each(services: Services, ids: Iterable[str]) -> dict[str, Any]:
-    """Delete each run that can be deleted, in this order; return the JSON of `DeletedView`."""
-    deleted, refused = [], []
+def delete_each(services: Services, ids: Iterable[str]) -> DeletedView:
+    """Delete each run that can be deleted, in this order; return what was deleted and kept."""
+    deleted, kept = [], []
     for run_id in dict.fromkeys(ids):
         try:
             services.jobs.delete(run_id)
         except (NotFound, Conflict) as error:
-            refused.append({"id": run_id, "reason": str(error)})
+            kept.append(KeptRun(id=run_id, reason=str(error)))
         else:
             deleted.append(run_id)
-    return {"deleted": deleted, "kept": refused}
+    return DeletedView(deleted=deleted, kept=kept)
 
 
 @router.get(
     "/curves",
     summary="Get a few points of several learning curves",
-    response_model=CurvesView,
     description=(
         f"Return up to {MAX_POINTS} points of each training's curve, at even distances and with "
         "the newest, for small pictures. Runs without evaluations are left out."
     ),
 )
 @policy(access=WATCH)
-def get_curves(services: ServicesDep, ids: RunIdsQuery) -> Response:
+def get_curves(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[CurvesView]:
     """Return thinned curves; `GET /trainings/{run_id}/curve` has all points of one."""
     points_by_run = services.store.curves.thinned(frozenset(ids), MAX_POINTS)
     curves = [
-        {"id": run_id, "steps": [step for step, _ in points], "distances_m": [d for _, d in points]}
+        ThinnedCurve(
+            id=run_id,
+            steps=[step for step, _ in points],
+            distances_m=[distance_m for _, distance_m in points],
+        )
         for run_id, points in sorted(points_by_run.items())
     ]
-    return JSONResponse(finite({"curves": curves}))
+    return RecordResponse(CurvesView(curves=curves))
 
 
 @router.get(

@@ -2,15 +2,16 @@
 
 import socket
 from functools import lru_cache
+from typing import NamedTuple
 from urllib.parse import urlsplit
 
 import segno
 from fastapi import Request
-from starlette.responses import JSONResponse, Response
 
-from app.api.answers import SpectatorsView
+from app.answer import Answer, Count
 from app.api.deps import ServicesDep, StageDep
 from app.api.policy import WATCH, api_router, policy
+from app.api.record_response import RecordResponse
 from app.setting_fields import PREFIX
 from app.settings import Settings, is_loopback
 
@@ -26,22 +27,35 @@ _LOOPBACK_ONLY = (
 router = api_router(prefix="/spectators", tags=["stage"])
 
 
-@router.get(
-    "", response_model=SpectatorsView, summary="Get the spectators' address and their number"
-)
+class SpectatorsView(Answer):
+    """Spectators' address with its QR code, or the reason why there is none.
+
+    Attributes:
+        qr_code: SVG image as a data URI.
+    """
+
+    address: str | None
+    qr_code: str | None
+    reason: str
+    watching: Count
+
+
+@router.get("", summary="Get the spectators' address and their number")
 @policy(access=WATCH)
-def get_spectators(request: Request, services: ServicesDep, shared: StageDep) -> Response:
+def get_spectators(
+    request: Request, services: ServicesDep, shared: StageDep
+) -> RecordResponse[SpectatorsView]:
     """Return the address at which others watch, or why there is none, and its QR code."""
     is_public = shared.roles.is_public
     address = address_for_others(request, services.settings) if is_public else None
     reason = _LOOPBACK_ONLY if is_public else _NEEDS_TOKEN
-    answer = {
-        "address": address,
-        "qr_code": None if address is None else qr_image(address),
-        "reason": reason if address is None else "",
-        "watching": shared.hub.counters.viewers,
-    }
-    return JSONResponse(answer)
+    spectators = SpectatorsView(
+        address=address,
+        qr_code=None if address is None else qr_image(address),
+        reason=reason if address is None else "",
+        watching=shared.hub.counters.viewers,
+    )
+    return RecordResponse(spectators)
 
 
 def page_address(request: Request, settings: Settings, path: str) -> str:
@@ -57,14 +71,23 @@ def page_address(request: Request, settings: Settings, path: str) -> str:
     return address.rstrip("/").removesuffix(root) + path
 
 
-def link_of(request: Request, settings: Settings, path: str) -> dict[str, str | None]:
-    """Return `address` and `qr_code` of a page; no code if phones cannot come to the address.
+class Link(NamedTuple):
+    """Link to a page of this server.
 
-    Args: as of `page_address`.
+    Attributes:
+        address: of the page, for others if they can reach the server.
+        qr_code: of the address, an SVG image as a data URI; None if phones cannot reach the server.
     """
+
+    address: str
+    qr_code: str | None
+
+
+def link_to(request: Request, settings: Settings, path: str) -> Link:
+    """Return the link to a page; arguments as of `page_address`."""
     address = page_address(request, settings, path)
     is_reachable = address_for_others(request, settings) is not None
-    return {"address": address, "qr_code": qr_image(address) if is_reachable else None}
+    return Link(address, qr_image(address) if is_reachable else None)
 
 
 @lru_cache(maxsize=64)

@@ -12,9 +12,11 @@ from collections import OrderedDict, deque
 from collections.abc import AsyncIterator, Callable, Container, Mapping
 from typing import Any, NamedTuple
 
+from app.answer import Answer
 from app.events.run_view import run_view
 from app.storage.json_text import json_text
 from app.storage.run import AnyRun
+from hexapods.domain.records import to_json_bytes
 
 RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
@@ -163,7 +165,7 @@ class EventBus:
     def publish(
         self,
         event: str,
-        data: Mapping[str, Any],
+        data: Mapping[str, Any] | Answer,
         run_id: str | None = None,
         channel: "Channel | None" = None,
     ) -> None:
@@ -181,12 +183,12 @@ class EventBus:
     def _send(
         self,
         event: str,
-        data: Mapping[str, Any],
+        data: Mapping[str, Any] | Answer,
         run_id: str | None,
         run: AnyRun | None = None,
         channel: "Channel | None" = None,
     ) -> None:
-        text = json_text(data)
+        text = to_json_bytes(data).decode() if isinstance(data, Answer) else json_text(data)
         with self._lock:
             is_state = event in self.state_events
             published = Event(next(self._ids), event, text, run_id, run, channel, is_state)
@@ -255,7 +257,9 @@ class Channel:
         self._bus = bus
         self.is_closed = False
 
-    def publish(self, event: str, data: Mapping[str, Any], run_id: str | None = None) -> None:
+    def publish(
+        self, event: str, data: Mapping[str, Any] | Answer, run_id: str | None = None
+    ) -> None:
         """Send an event to the subscribers of this channel; see `EventBus.publish`."""
         self._bus.publish(event, data, run_id, channel=self)
 

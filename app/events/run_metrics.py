@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from app.answer import Answer
 from app.events.bus import Channel, EventBus
 from app.storage.run import AnyRun, Run
 from app.storage.run_kind import WALKS
@@ -54,7 +55,7 @@ class RunMetrics(EventBus):
     def publish(
         self,
         event: str,
-        data: Mapping[str, Any],
+        data: Mapping[str, Any] | Answer,
         run_id: str | None = None,
         channel: Channel | None = None,
     ) -> None:

@@ -55,9 +55,8 @@ class Record:
         for field in schema["schema"]["fields"]:
             if field["name"] in attributes:
                 describe = partial(_described, attributes[field["name"]])
-                field.setdefault("metadata", {}).setdefault("pydantic_js_functions", []).append(
-                    describe
-                )
+                metadata = field.setdefault("metadata", {})
+                metadata.setdefault("pydantic_js_annotation_functions", []).append(describe)
             if field["name"] in cls.json_names:
                 name = cls.json_names[field["name"]]
                 field |= {"validation_alias": name, "serialization_alias": name}
@@ -159,6 +158,13 @@ def to_json(record: Any, context: Any = None) -> dict[str, Any]:
     adapter = _adapter(type(record))  # type: ignore[arg-type]  # mypy: no hash
     plain: dict[str, Any] = adapter.dump_python(record, mode="json", by_alias=True, context=context)
     return plain
+
+
+def to_json_bytes(record: Any) -> bytes:
+    """Write a record as JSON; NaN and infinities, which JSON lacks, as null."""
+    adapter = _adapter(type(record))  # type: ignore[arg-type]  # mypy: no hash
+    written: bytes = adapter.dump_json(record, by_alias=True)
+    return written
 
 
 def from_json(kind: type[T], data: Any, **how: Any) -> T:

@@ -2407,48 +2407,7 @@ export interface GaitFigures {
    * null if the walk does not end in one, or its choices were not recorded.
    */
   cycle: Cycle | null;
-  /**
-   * The torso over time: the height of its centre over flat ground, its pitch and roll.
-   */
-  posture: {
-    /**
-     * robot time of the samples.
-     */
-    time_s: number[];
-    /**
-     * at those times; pitch is positive with the front up, roll with the left side up.
-     */
-    height_m: number[];
-    /**
-     * at those times; pitch is positive with the front up, roll with the left side up.
-     */
-    pitch_deg: number[];
-    /**
-     * at those times; pitch is positive with the front up, roll with the left side up.
-     */
-    roll_deg: number[];
-    /**
-     * lowest and highest of all frames.
-     *
-     * @minItems 2
-     * @maxItems 2
-     */
-    height_range_m: [number, number];
-    /**
-     * lowest and highest of all frames.
-     *
-     * @minItems 2
-     * @maxItems 2
-     */
-    pitch_range_deg: [number, number];
-    /**
-     * lowest and highest of all frames.
-     *
-     * @minItems 2
-     * @maxItems 2
-     */
-    roll_range_deg: [number, number];
-  };
+  posture: Posture;
   /**
    * null if it was not recorded.
    */
@@ -2461,6 +2420,48 @@ export interface LegGait {
   leg: number;
   stance: [number, number][];
   duty_factor: number;
+}
+/**
+ * The torso over time: the height of its centre over flat ground, its pitch and roll.
+ */
+export interface Posture {
+  /**
+   * robot time of the samples.
+   */
+  time_s: number[];
+  /**
+   * at those times; pitch is positive with the front up, roll with the left side up.
+   */
+  height_m: number[];
+  /**
+   * at those times; pitch is positive with the front up, roll with the left side up.
+   */
+  pitch_deg: number[];
+  /**
+   * at those times; pitch is positive with the front up, roll with the left side up.
+   */
+  roll_deg: number[];
+  /**
+   * lowest and highest of all frames.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  height_range_m: [number, number];
+  /**
+   * lowest and highest of all frames.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  pitch_range_deg: [number, number];
+  /**
+   * lowest and highest of all frames.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  roll_range_deg: [number, number];
 }
 /**
  * Torque and mechanical work of the servos.

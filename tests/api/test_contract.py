@@ -3,6 +3,7 @@
 import asyncio
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -269,8 +270,9 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
         return await anext(get_events(services, services.stages[0], None, listener))
 
     snapshot = asyncio.run(first_event())
-    bodies = event_bodies(load().classes).model_fields.items()
-    models: dict[str, Any] = {field.alias or name: field.annotation for name, field in bodies}
+    bodies = event_bodies(load().classes)
+    members: list[Any] = [*fields(bodies)]
+    models = {bodies.json_names.get(member.name, member.name): member.type for member in members}
     events = subscription.drain()
     subscription.close()
     received = {event.event for event in events}

@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import Page
 
 from app.features.experiments.response_models import SummaryView
+from hexapods.domain.records import from_json
 from hexapods.experiments.config import experiment_config
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.report.trials_csv import trials_csv
@@ -40,7 +41,7 @@ def summary(experiment: str, curve_m: tuple[float, ...], **options: Any) -> dict
             distances_m=tuple(metres + more_m for metres in distances_m), earned_m=earned_m
         )
     summarised = summarise(config, results)
-    SummaryView.model_validate(json.loads(json.dumps(summarised)))  # is what REST promises
+    from_json(SummaryView, json.loads(json.dumps(summarised)))  # is what REST promises
     trials_csv(config, results, {})
     return summarised
 

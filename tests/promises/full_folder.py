@@ -1,7 +1,6 @@
 """A data folder with rows in every table, as the server's own parts write them."""
 
-from typing import Any
-
+from app.api.answers import ComparisonView, SeedsView
 from app.features.classroom.lesson import Lesson, read_lesson
 from app.features.classroom.lesson_rows import LessonRows
 from app.features.classroom.lessons import Lessons
@@ -32,21 +31,15 @@ OF_ROOM, OF_VISITOR = "00000000000p1", "00000000000v1"
 VISITOR = 64 * "a"
 TAUGHT = "Taught"
 """Title of the room that is open."""
-_HALF: dict[str, Any] = {
-    "settings": {"alpha": 0.5},
-    "steps_per_episode": 50,
-    "distances_m": [0.25, 0.25],
-    "walkers": 1.0,
-    "iqm_m": 0.25,
-}
-ANSWER: dict[str, Any] = {
-    "seeds": 2,
-    "greedy_m": 0.5,
-    "compute_s": 0.5,
-    "chosen": _HALF,
-    "default": _HALF,
-}
-"""Of a what-if."""
+_SEEDS = SeedsView(
+    settings={"alpha": 0.5},
+    steps_per_episode=50,
+    distances_m=[0.25, 0.25],
+    walkers=1.0,
+    iqm_m=0.25,
+)
+COMPARISON = ComparisonView(seeds=2, greedy_m=0.5, compute_s=0.5, chosen=_SEEDS, default=_SEEDS)
+"""Answer of a what-if."""
 
 
 def lesson(title: str) -> Lesson:
@@ -104,7 +97,7 @@ def _fill_rooms(store: RunStore, ended: int) -> str:
     rooms.join(code)
     rooms.predict(code, 0, 0, 0.25)
     rooms.show_card(code, 1)
-    rooms.ask(code, 0, {"alpha": 0.5}, lambda: ANSWER, card=1)
+    rooms.ask(code, 0, {"alpha": 0.5}, lambda: COMPARISON, card=1)
     rooms.show_card(code, 0)
     (room_run,) = rooms.get(code).runs.values()
     of_room: RoomRun = room_run._replace(run_id=OF_ROOM, card=0, answer=None)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from fastapi import APIRouter
-from pydantic import BaseModel
 from sqlalchemy import ColumnElement
 from starlette.routing import BaseRoute
 
+from app.answer import Answer
 from app.api.deps import EventListener, Services
 from app.api.identity import Identity
 from app.api.pages import page_content
@@ -20,7 +20,7 @@ from app.features.classroom.access import Participant, RoomAccess
 from app.features.classroom.card_starts import CardStarts
 from app.features.classroom.lesson_rows import LessonRows
 from app.features.classroom.lessons import Lessons
-from app.features.classroom.response_models import RoomEvent
+from app.features.classroom.room import RoomEvent
 from app.features.classroom.room_rows import Seat, is_seen_by
 from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
@@ -53,7 +53,7 @@ class Classroom(Feature):
         "room_runs": f"{_BACKUP}, and shows these runs to operators alone",
     }
     state_events = ("room",)
-    event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {"room": RoomEvent}
+    event_bodies: ClassVar[Mapping[str, type[Answer]]] = {"room": RoomEvent}
 
     def __init__(self, core: Services) -> None:
         super().__init__(core)

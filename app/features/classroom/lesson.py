@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import MaxLen, MinLen
 from pydantic import Field, TypeAdapter, ValidationError
 
+from app.answer import Answer
 from app.features.classroom.card_settings import check_bounds
 from app.features.classroom.markdown import (
     Markdown,
@@ -180,13 +181,21 @@ def plain(lesson: Lesson) -> dict[str, Any]:
     return document
 
 
-def html_of(card: Card) -> dict[str, str]:
+class CardTexts(Answer):
+    """The texts of a card as HTML: of the card, of its question, and of what is revealed."""
+
+    text: str
+    ask: str
+    reveal: str
+
+
+def html_of(card: Card) -> CardTexts:
     """Return the texts of a card as HTML that a page may show as it is."""
-    return {
-        "text": as_html(card.text),
-        "ask": "" if card.ask is None else as_html(card.ask.text),
-        "reveal": as_html(card.revealed.text),
-    }
+    return CardTexts(
+        text=as_html(card.text),
+        ask="" if card.ask is None else as_html(card.ask.text),
+        reveal=as_html(card.revealed.text),
+    )
 
 
 def _without_nothing(value: Any) -> Any:

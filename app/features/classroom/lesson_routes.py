@@ -2,19 +2,20 @@
 
 import json
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import Depends, Path, Query, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.contract import TEXT, answers
 from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, api_router, policy
-from app.api.spectators import link_of
+from app.api.record_response import RecordResponse
+from app.api.spectators import link_to
 from app.features.classroom.access import LESSONS, ReaderDep
 from app.features.classroom.card_starts import CardStarts
-from app.features.classroom.lesson import GIVEN_LESSON, Lesson, adapter, html_of
+from app.features.classroom.lesson import GIVEN_LESSON, Lesson, html_of
 from app.features.classroom.lesson_file import (
     MAX_BYTES,
     MEDIA_TYPE,
@@ -23,7 +24,7 @@ from app.features.classroom.lesson_file import (
     write_file,
 )
 from app.features.classroom.lessons import FoundLesson, Lessons
-from app.features.classroom.response_models import LessonList, LessonView, NewLesson
+from app.features.classroom.response_models import LessonList, LessonView, ListedLesson, NewLesson
 from app.features.classroom.rooms import Rooms
 from hexapods.domain.errors import InvalidInput
 
@@ -55,7 +56,6 @@ def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
     "",
     status_code=201,
     summary="Store a lesson",
-    response_model=NewLesson,
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
     openapi_extra={
         "requestBody": {
@@ -70,7 +70,7 @@ def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
 @policy(access=OPERATOR)
 def add_lesson(
     services: ServicesDep, request: Request, lesson: Annotated[Lesson, Depends(_lesson)]
-) -> Response:
+) -> RecordResponse[NewLesson]:
     """Store the lesson; the same content has the same id, on every server.
 
     What its cards run must be possible to start, and what they open be within the setting's own
@@ -79,33 +79,32 @@ def add_lesson(
     services.of(CardStarts).check(lesson, services.store)
     stored = services.of(Lessons).add(lesson)
     path = request.url_for("get_lesson", lesson_id=stored.id).path
-    link = link_of(request, services.settings, f"/l/{stored.id}")
-    added = {"id": stored.id, "link": link["address"], "qr_code": link["qr_code"]}
-    return JSONResponse(added, 201, {"Location": path})
+    link = link_to(request, services.settings, f"/l/{stored.id}")
+    lesson_added = NewLesson(id=stored.id, link=link.address, qr_code=link.qr_code)
+    return RecordResponse(lesson_added, 201, {"Location": path})
 
 
-@router.get("", summary="List lessons", response_model=LessonList)
+@router.get("", summary="List lessons")
 @policy(access=LESSONS)
-def list_lessons(services: ServicesDep) -> Response:
+def list_lessons(services: ServicesDep) -> RecordResponse[LessonList]:
     """Return the lessons that are built in, and those that were stored."""
     items = [
-        {
-            "id": stored.id,
-            "title": stored.lesson.title,
-            "language": stored.lesson.language,
-            "aims": list(stored.lesson.aims),
-            "cards": len(stored.lesson.cards),
-            "is_built_in": stored.is_built_in,
-        }
+        ListedLesson(
+            id=stored.id,
+            title=stored.lesson.title,
+            language=stored.lesson.language,
+            aims=list(stored.lesson.aims),
+            cards=len(stored.lesson.cards),
+            is_built_in=stored.is_built_in,
+        )
         for stored in services.of(Lessons).all()
     ]
-    return JSONResponse({"items": items})
+    return RecordResponse(LessonList(items=items))
 
 
 @router.get(
     "/{lesson_id}",
     summary="Get a lesson (JSON, YAML)",
-    response_model=LessonView,
     responses=answers(200, {MEDIA_TYPE: GIVEN_LESSON}),
 )
 @policy(access=LESSONS, depends_on_state=False)
@@ -115,7 +114,7 @@ def get_lesson(
     lesson_id: LessonPath,
     reader: ReaderDep,
     format: Annotated[Literal["json", "yaml"] | None, Query()] = None,  # noqa: A002
-) -> Response:
+) -> RecordResponse[LessonView] | Response:
     """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server.
 
     While an open room teaches it, it is for operators alone whole: for others it has neither what
@@ -127,7 +126,7 @@ def get_lesson(
     if negotiated(request, format, ("json", "yaml"), _TYPES) == "yaml":
         text = write_file(stored.lesson).encode()
         return attachment(text, MEDIA_TYPE, f"lesson-{stored.id}.yaml")
-    return JSONResponse(lesson_view(stored, is_taught=is_taught))
+    return RecordResponse(lesson_view(stored, is_taught=is_taught))
 
 
 def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson, bool]:
@@ -146,12 +145,16 @@ def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
     services.of(Lessons).delete(lesson_id)
 
 
-def lesson_view(stored: FoundLesson, *, is_taught: bool = False) -> dict[str, Any]:
+def lesson_view(stored: FoundLesson, *, is_taught: bool = False) -> LessonView:
     """Return a lesson as `GET /lessons/{lesson_id}` responds; `is_taught` if parts are left out."""
-    return {
-        **adapter().dump_python(stored.lesson, mode="json"),
-        "id": stored.id,
-        "is_built_in": stored.is_built_in,
-        "is_taught": is_taught,
-        "html": [html_of(card) for card in stored.lesson.cards],
-    }
+    lesson = stored.lesson
+    return LessonView(
+        title=lesson.title,
+        language=lesson.language,
+        aims=lesson.aims,
+        cards=lesson.cards,
+        id=stored.id,
+        is_built_in=stored.is_built_in,
+        is_taught=is_taught,
+        html=tuple(map(html_of, lesson.cards)),
+    )

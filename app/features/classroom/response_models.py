@@ -2,23 +2,14 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Literal
 
-from pydantic import Field, JsonValue
+from pydantic import JsonValue
 
-from app.api.answers import Answer, ComparisonView, Count
-from app.api.run_views import KindName
-from app.features.classroom.lesson import Card, Lesson
-from app.features.classroom.questions import Ask, Score
+from app.answer import Answer, Count
+from app.features.classroom.lesson import Card, CardTexts, Lesson
+from app.features.classroom.room import Phase, RoomState
 from app.storage.run import State
-
-
-class CardTexts(Answer):
-    """The texts of a card as HTML: of the card, of its question, and of what is revealed."""
-
-    text: str
-    ask: str
-    reveal: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,39 +75,6 @@ class NewRoom(Answer):
     code: str
     address: str
     qr_code: str | None
-
-
-class RoomState(Answer):
-    """State of a room that all in it may know.
-
-    Attributes:
-        state: `open`, `frozen`: nothing can be answered or started, or `ended`.
-        card: number of the card that is shown, from 0.
-        cards: number of the lesson's cards.
-        revealed: numbers of the cards that are revealed.
-        participants: number of those who are in it.
-        predicted: number of those who have answered the card that is shown.
-        started: number of those who have started a run on it.
-        spotlight: id of the run on its stage.
-    """
-
-    code: str
-    title: str
-    language: str
-    lesson_id: str | None
-    state: Literal["open", "frozen", "ended"]
-    card: Count
-    cards: Count
-    revealed: list[Count]
-    participants: Count
-    predicted: Count
-    started: Count
-    spotlight: str | None
-    needs_approval: bool
-
-
-class RoomEvent(RoomState):
-    """A room has changed; sent on its own stage alone."""
 
 
 class OwnRun(Answer):
@@ -201,7 +159,7 @@ class ListedRoom(Answer):
 
     code: str
     title: str
-    state: Literal["open", "frozen", "ended"]
+    state: Phase
     participants: Count
     created_at: datetime
 
@@ -229,81 +187,3 @@ class PredictionView(Answer):
 
     card: Count
     value: JsonValue
-
-
-class RunOutcome(Answer):
-    """A participant's run on a card.
-
-    Attributes:
-        id: of the run; of a what-if that of its record.
-        given: settings that they gave, by name.
-        distance_m: how far the robot walked; of a race the learner, at time-out; of a what-if the
-            interquartile mean with the chosen settings.
-        winners: agents of the lanes that won a race.
-        rank: among the seeds, 1 for the longest distance; null before the reveal.
-        answer: of one's own what-if.
-    """
-
-    id: str
-    kind: KindName | Literal["what-if"]
-    state: State
-    given: dict[str, Any]
-    distance_m: float | None
-    winners: list[str]
-    rank: Annotated[int, Field(ge=1)] | None
-    answer: ComparisonView | None
-
-
-class ResultEntry(Answer):
-    """A participant's part of a card's results.
-
-    Attributes:
-        name: null where it is not to be seen.
-        score: of the prediction; for participants after the reveal.
-    """
-
-    seed: Count
-    name: str | None
-    is_own: bool
-    prediction: JsonValue
-    score: Score | None
-    run: RunOutcome | None
-
-
-class IntervalView(Answer):
-    """Interquartile mean of the distances [m] with its 95 % interval, from three seeds on."""
-
-    iqm_m: float
-    low_m: float | None
-    high_m: float | None
-
-
-class CardResultsView(Answer):
-    """The results of a card, as who asks may see them.
-
-    Attributes:
-        participants, predicted, finished: number of participants, of those who have answered, and
-            of those whose run has finished.
-        entries: before the reveal a participant's own alone.
-        distances_m: of all seeds, shortest first; empty before the reveal but for a teacher.
-        answer: what the lesson gives as the answer.
-    """
-
-    card: Count
-    title: str
-    ask: Ask | None
-    is_revealed: bool
-    participants: Count
-    predicted: Count
-    finished: Count
-    entries: list[ResultEntry]
-    distances_m: list[float]
-    interval: IntervalView | None
-    answer: float | str | None
-
-
-class ResultsView(Answer):
-    """The results of a room, by card."""
-
-    code: str
-    cards: list[CardResultsView]

@@ -3,19 +3,25 @@
 import csv
 import io
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Literal, NamedTuple
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import Annotated, Any, Literal, NamedTuple
 
+from annotated_types import Ge
+from pydantic import JsonValue
+
+from app.answer import Answer, Count
+from app.api.answers import ComparisonView
+from app.api.run_views import KindName
 from app.features.classroom.questions import Ask, Score, WalkOutcome, scorer
 from app.features.classroom.room import Room
 from app.features.classroom.room_rows import RoomRun
 from app.storage.database.store import RunStore
 from app.storage.errors import NotFound
 from app.storage.json_text import is_finite
-from app.storage.run import Kind, Run, State
+from app.storage.run import Run, State
 from hexapods.domain.text import text_cell
-from hexapods.experiments.statistics import Interval, iqm_interval
+from hexapods.experiments.statistics import iqm_interval
 from hexapods.runs.results import RaceResult, TrainingResult
 
 _SEED_OF_INTERVALS = 0
@@ -24,78 +30,89 @@ SCORES = tuple(field.name for field in fields(Score))
 """Names of the figures of a score."""
 
 
-class ParticipantResult(NamedTuple):
-    """A participant's run on a card, or what-if.
+class RunOutcome(Answer):
+    """A participant's run on a card.
 
     Attributes:
-        id: of the run, or the what-if.
-        kind: of the run.
-        state: of the run; a what-if is kept once it is finished.
-        given: settings that the participant gave, by name.
-        outcome: what came of it, once it is finished.
-        rank: among the seeds by distance, 1 for the longest; None before the reveal.
-        answer: of a what-if; its distance is the interquartile mean with the chosen settings.
+        id: of the run; of a what-if that of its record.
+        given: settings that they gave, by name.
+        distance_m: how far the robot walked; of a race the learner, at time-out; of a what-if the
+            interquartile mean with the chosen settings.
+        winners: agents of the lanes that won a race.
+        rank: among the seeds, 1 for the longest distance; null before the reveal.
+        answer: of one's own what-if.
     """
 
     id: str
-    kind: Kind | Literal["what-if"]
+    kind: KindName | Literal["what-if"]
     state: State
     given: dict[str, Any]
-    outcome: WalkOutcome
-    rank: int | None = None
-    answer: Mapping[str, Any] | None = None
+    distance_m: float | None
+    winners: list[str]
+    rank: Annotated[int, Ge(1)] | None
+    answer: ComparisonView | None
 
 
-class Entry(NamedTuple):
+class ResultEntry(Answer):
     """A participant's part of a card's results.
 
     Attributes:
-        seed: of the participant.
-        name: None where it is not to be seen.
-        is_own: whether it is the reader's own.
-        prediction: the answer; None without one.
-        score: of the answer, after the reveal, and for teachers at any time.
-        run: the newest one; None without one.
+        name: null where it is not to be seen.
+        score: of the prediction; for participants after the reveal.
     """
 
-    seed: int
+    seed: Count
     name: str | None
     is_own: bool
-    prediction: Any
+    prediction: JsonValue
     score: Score | None
-    run: ParticipantResult | None
+    run: RunOutcome | None
 
 
-@dataclass(frozen=True)
-class CardResults:
-    """The results of a card.
+class IntervalView(Answer):
+    """Interquartile mean of the distances [m] with its 95 % interval, from three seeds on."""
+
+    iqm_m: float
+    low_m: float | None
+    high_m: float | None
+
+
+class CardResultsView(Answer):
+    """The results of a card, as who asks may see them.
 
     Attributes:
-        card: its number.
-        title: of the card, or "".
-        ask: its question; None without one.
-        is_revealed: whether participants see those of others.
-        participants: number of those who are in the room, or have left.
-        predicted: number of those who have answered.
-        finished: number of those whose run has finished.
-        entries: of those whom the reader may see, by seed.
-        distances_m: of all seeds that the reader may see, shortest first; empty before the reveal
-            but for teachers.
-        interval: interquartile mean of the distances [m] with its 95 % interval.
-        answer: what the lesson says; None before the reveal.
+        participants, predicted, finished: number of participants, of those who have answered, and
+            of those whose run has finished.
+        entries: before the reveal a participant's own alone.
+        distances_m: of all seeds, shortest first; empty before the reveal but for a teacher.
+        answer: what the lesson gives as the answer.
     """
 
-    card: int
+    card: Count
     title: str
     ask: Ask | None
     is_revealed: bool
-    participants: int
-    predicted: int
-    finished: int
-    entries: list[Entry]
+    participants: Count
+    predicted: Count
+    finished: Count
+    entries: list[ResultEntry]
     distances_m: list[float]
-    interval: Interval | None
+    interval: IntervalView | None
     answer: float | str | None
+
+
+class ResultsView(Answer):
+    """The results of a room, by card."""
+
+    code: str
+    cards: list[CardResultsView]
+
+
+class _Run(NamedTuple):
+    """The newest run, or what-if, of a participant on a card, with all that came of it."""
+
+    shown: RunOutcome
+    outcome: WalkOutcome
 
 
 class Reader(NamedTuple):
@@ -119,9 +136,7 @@ class Reader(NamedTuple):
         return is_own or room.participants[seed].is_approved
 
 
-def results_of(
-    room: Room, store: RunStore, cards: Sequence[int], reader: Reader
-) -> list[CardResults]:
+def results_of(room: Room, store: RunStore, cards: Sequence[int], reader: Reader) -> ResultsView:
     """Return the results of some cards, as a reader may see them.
 
     Args:
@@ -131,10 +146,11 @@ def results_of(
         reader: the reader.
     """
     room = room.snapshot()
-    return [_card_results(room, store, card, reader) for card in cards]
+    views = [_card_results(room, store, card, reader) for card in cards]
+    return ResultsView(code=room.code, cards=views)
 
 
-def as_csv(results: Sequence[CardResults]) -> str:
+def as_csv(results: ResultsView) -> str:
     """Return results as CSV, without names."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
@@ -144,30 +160,29 @@ def as_csv(results: Sequence[CardResults]) -> str:
             *("run_id", "kind", "state", "settings", "distance_m", "winners"),
         ]
     )
-    for result in results:
+    for result in results.cards:
         for entry in result.entries:
             run, score = entry.run, entry.score or Score()
-            outcome = WalkOutcome(None) if run is None else run.outcome
             prediction = entry.prediction
             if not isinstance(prediction, str | float | int | None):
                 prediction = json.dumps(prediction)
-            of_run = [None] * 4 if run is None else [run.id, run.kind, run.state, _text(run.given)]
             row = [
                 *(result.card, entry.seed, prediction, *(getattr(score, name) for name in SCORES)),
-                *(*of_run, outcome.distance_m, " ".join(outcome.winners)),
+                *([None] * 5 + [""] if run is None else _cells(run)),
             ]
             writer.writerow([text_cell(cell) if isinstance(cell, str) else cell for cell in row])
     return file.getvalue()
 
 
-def _text(given: dict[str, Any]) -> str:
-    return json.dumps(given) if given else ""
+def _cells(run: RunOutcome) -> list[Any]:
+    settings = json.dumps(run.given) if run.given else ""
+    return [run.id, run.kind, run.state, settings, run.distance_m, " ".join(run.winners)]
 
 
-def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> CardResults:
+def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> CardResultsView:
     newest = {seed: _newest(room, store, seed, card) for seed in sorted(room.participants)}
     runs = {seed: run for seed, run in newest.items() if run is not None}
-    ended = {seed: run.outcome for seed, run in runs.items() if run.state == "finished"}
+    ended = {seed: run.outcome for seed, run in runs.items() if run.shown.state == "finished"}
     seen = [outcome for seed, outcome in ended.items() if reader.sees(room, seed)]
     ranked = sorted(outcome.distance_m for outcome in seen if outcome.distance_m is not None)
     is_open = reader.is_teacher or card in room.revealed
@@ -181,12 +196,18 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
         is_named = is_own or (reader.is_teacher and not reader.is_projector)
         name = participant.name if is_named else room.name_for_others(seed)
         prediction, run = room.predictions.get((seed, card)), runs.get(seed)
-        if run is not None and is_open and run.outcome.distance_m is not None:
-            over = sum(distance_m > run.outcome.distance_m for distance_m in ranked)
-            run = run._replace(rank=1 + over)
+        outcome = None if run is None else run.shown
+        if outcome is not None and is_open and outcome.distance_m is not None:
+            over = sum(distance_m > outcome.distance_m for distance_m in ranked)
+            outcome = replace(outcome, rank=1 + over)
+        if outcome is not None and not is_own:
+            outcome = replace(outcome, answer=None)
         scored = score(prediction) if score and prediction is not None and is_open else None
-        entries.append(Entry(seed, name, is_own, prediction, scored, run))
-    return CardResults(
+        entry = ResultEntry(
+            seed=seed, name=name, is_own=is_own, prediction=prediction, score=scored, run=outcome
+        )
+        entries.append(entry)
+    return CardResultsView(
         card=card,
         title=shown.title or "",
         ask=shown.ask,
@@ -201,51 +222,57 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
     )
 
 
-def _interval(distances_m: Sequence[float]) -> Interval:
-    return iqm_interval((tuple(distances_m),), _SEED_OF_INTERVALS)
+def _interval(distances_m: Sequence[float]) -> IntervalView:
+    interval = iqm_interval((tuple(distances_m),), _SEED_OF_INTERVALS)
+    return IntervalView(iqm_m=interval.value, low_m=interval.low, high_m=interval.high)
 
 
-def _newest(room: Room, store: RunStore, seed: int, card: int) -> ParticipantResult | None:
+def _newest(room: Room, store: RunStore, seed: int, card: int) -> _Run | None:
     """Return what a participant started last on a card, of what is still there.
 
     One that has finished goes before one that has not.
     """
-    newest: ParticipantResult | None = None
+    newest: _Run | None = None
     for room_run in room.runs_of(seed, card):
         result = _result(room, room_run, store)
         if result is not None and (
-            newest is None or newest.state != "finished" or result.state == "finished"
+            newest is None or newest.shown.state != "finished" or result.shown.state == "finished"
         ):
             newest = result
     return newest
 
 
-def _result(room: Room, room_run: RoomRun, store: RunStore) -> ParticipantResult | None:
-    finished: ParticipantResult | None = room.finished.get(room_run.run_id)
+def _result(room: Room, room_run: RoomRun, store: RunStore) -> _Run | None:
+    finished: _Run | None = room.finished.get(room_run.run_id)
     if finished is not None:
         return finished  # a run that has finished changes no more, and a class asks again and again
     if room_run.answer is not None:
-        outcome = WalkOutcome(room_run.answer["chosen"]["iqm_m"])
-        return ParticipantResult(
-            room_run.run_id,
-            "what-if",
-            "finished",
-            dict(room_run.given),
-            outcome,
-            answer=room_run.answer,
-        )
+        outcome = WalkOutcome(room_run.answer.chosen.iqm_m)
+        return _run(room_run, "what-if", "finished", outcome)
     try:
         run = store.find(room_run.run_id)
     except NotFound:
         return None  # deleted, or never stored
     if not isinstance(run, Run):
         return None
-    result = ParticipantResult(
-        run.id, run.kind, run.state, dict(room_run.given), _outcome(run, store)
-    )
+    result = _run(room_run, run.kind, run.state, _outcome(run, store))
     if run.state == "finished":
         room.finished[room_run.run_id] = result
     return result
+
+
+def _run(room_run: RoomRun, kind: str, state: State, outcome: WalkOutcome) -> _Run:
+    shown = RunOutcome(
+        id=room_run.run_id,
+        kind=kind,
+        state=state,
+        given=dict(room_run.given),
+        distance_m=outcome.distance_m,
+        winners=list(outcome.winners),
+        rank=None,
+        answer=room_run.answer,
+    )
+    return _Run(shown, outcome)
 
 
 def _outcome(run: Run, store: RunStore) -> WalkOutcome:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import Any, Literal
 
+from app.answer import Answer, Count
 from app.features.classroom.lesson import Card, Lesson
 from app.features.classroom.room_rows import ParticipantRow, RoomRun
 from app.storage.errors import Conflict, Forbidden, NotFound
@@ -14,6 +15,39 @@ CardAction = Literal["predict", "run"]
 """Actions of a participant that the card may allow."""
 _ASKS_NOTHING = "card {number} asks nothing; wait for one with a question"
 _RUNS_NOTHING = "card {number} runs nothing; wait for one with a button to go"
+
+
+class RoomState(Answer):
+    """State of a room that all in it may know.
+
+    Attributes:
+        state: `open`, `frozen`: nothing can be answered or started, or `ended`.
+        card: number of the card that is shown, from 0.
+        cards: number of the lesson's cards.
+        revealed: numbers of the cards that are revealed.
+        participants: number of those who are in it.
+        predicted: number of those who have answered the card that is shown.
+        started: number of those who have started a run on it.
+        spotlight: id of the run on its stage.
+    """
+
+    code: str
+    title: str
+    language: str
+    lesson_id: str | None
+    state: Phase
+    card: Count
+    cards: Count
+    revealed: list[Count]
+    participants: Count
+    predicted: Count
+    started: Count
+    spotlight: str | None
+    needs_approval: bool
+
+
+class RoomEvent(RoomState):
+    """A room has changed; sent on its own stage alone."""
 
 
 @dataclass
@@ -83,25 +117,25 @@ class Room:
         return "frozen" if self.is_frozen else "open"
 
     @property
-    def state(self) -> dict[str, Any]:
-        """State that all in the room may know, in plain types, as its `room` event has it."""
+    def state(self) -> RoomEvent:
+        """State that all in the room may know."""
         runs = list(self.runs.values())
         started = {run.seed for run in runs if run.is_main and run.card == self.card}
-        return {
-            "code": self.code,
-            "title": self.lesson.title,
-            "language": self.lesson.language,
-            "lesson_id": self.lesson_id,
-            "state": self.phase,
-            "card": self.card,
-            "cards": len(self.lesson.cards),
-            "revealed": sorted(self.revealed),
-            "participants": len(self.present),
-            "predicted": sum(card == self.card for _, card in list(self.predictions)),
-            "started": len(started),
-            "spotlight": self.spotlight,
-            "needs_approval": self.needs_approval,
-        }
+        return RoomEvent(
+            code=self.code,
+            title=self.lesson.title,
+            language=self.lesson.language,
+            lesson_id=self.lesson_id,
+            state=self.phase,
+            card=self.card,
+            cards=len(self.lesson.cards),
+            revealed=sorted(self.revealed),
+            participants=len(self.present),
+            predicted=sum(card == self.card for _, card in list(self.predictions)),
+            started=len(started),
+            spotlight=self.spotlight,
+            needs_approval=self.needs_approval,
+        )
 
     def snapshot(self) -> "Room":
         """Return a copy whose participants, predictions and runs do not change meanwhile."""

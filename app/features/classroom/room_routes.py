@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from fastapi import Depends, Header, Path, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import ServerSentEvent
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.answers import ComparisonView, DeletedView
 from app.api.contract import LOCATION, TEXT, Schema, answers
@@ -17,9 +17,10 @@ from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
 from app.api.identity import charged_client
 from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.run_views import AnyRunView
 from app.api.runs import delete_each, located
-from app.api.spectators import address_for_others, link_of
+from app.api.spectators import address_for_others, link_to
 from app.features.classroom.access import (
     BY_CODE,
     JOIN,
@@ -46,20 +47,19 @@ from app.features.classroom.request_bodies import (
 )
 from app.features.classroom.response_models import (
     JoinedView,
+    ListedRoom,
     NewRoom,
     PredictionView,
-    ResultsView,
     RoomList,
     RoomView,
 )
-from app.features.classroom.results import MEDIA_TYPE, Reader, as_csv, results_of
+from app.features.classroom.results import MEDIA_TYPE, Reader, ResultsView, as_csv, results_of
 from app.features.classroom.room import Room
 from app.features.classroom.room_stages import RoomStages, path_of_room
-from app.features.classroom.room_views import results_view, room_view
+from app.features.classroom.room_views import room_view
 from app.features.classroom.rooms import Rooms
 from app.features.classroom.what_ifs import WhatIfs
 from app.storage.errors import Conflict, Forbidden, NotFound
-from app.storage.json_text import finite
 from app.viewer.shared_stage import SharedStage
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.text import MAX_NAME, check_name
@@ -97,13 +97,12 @@ SeatDep = Annotated[int, Depends(_seat)]
     "",
     status_code=201,
     summary="Open a room",
-    response_model=NewRoom,
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
 )
 @policy(access=OPERATOR, starts=True)
 async def open_room(
     services: ServicesDep, request: Request, body: RoomBody | None = None
-) -> Response:
+) -> RecordResponse[NewRoom]:
     """Open a room with a stage of its own; its code is all that pupils need to join."""
     body = body or RoomBody()
 
@@ -123,47 +122,48 @@ async def open_room(
     for ended in services.of(Rooms).all():
         if not ended.is_open:
             await services.of(RoomStages).close(ended.code)
-    link = link_of(request, services.settings, path_of_room(in_groups(room.code)))
-    shown = {"code": room.code, **link}
+    link = link_to(request, services.settings, path_of_room(in_groups(room.code)))
+    opened = NewRoom(code=room.code, address=link.address, qr_code=link.qr_code)
     location = request.url_for("get_room", code=room.code).path
-    return JSONResponse(shown, 201, {"Location": location})
+    return RecordResponse(opened, 201, {"Location": location})
 
 
-@router.get("", summary="List the rooms that who asks may know", response_model=RoomList)
+@router.get("", summary="List the rooms that who asks may know")
 @policy(access=WATCH)
-def list_rooms(services: ServicesDep, request: Request, reader: ReaderDep) -> Response:
+def list_rooms(
+    services: ServicesDep, request: Request, reader: ReaderDep
+) -> RecordResponse[RoomList]:
     """Return all rooms to operators, and to participants those in which they are."""
     codes = None if reader is None else set(dict(reader))
     items = [
-        {
-            "code": room.code,
-            "title": room.lesson.title,
-            "state": room.phase,
-            "participants": len(room.present),
-            "created_at": room.created_at.isoformat(),
-        }
+        ListedRoom(
+            code=room.code,
+            title=room.lesson.title,
+            state=room.phase,
+            participants=len(room.present),
+            created_at=room.created_at,
+        )
         for room in services.of(Rooms).all()
         if codes is None or room.code in codes
     ]
     is_reachable = address_for_others(request, services.settings) is not None
-    return JSONResponse({"items": items, "is_reachable": is_reachable})
+    return RecordResponse(RoomList(items=items, is_reachable=is_reachable))
 
 
-@router.get("/{code}", summary="Get a room", response_model=RoomView)
+@router.get("/{code}", summary="Get a room")
 @policy(access=BY_CODE, depends_on_state=False)
 def get_room(
     services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
-) -> Response:
+) -> RecordResponse[RoomView]:
     """Return the room as who asks may see it: teacher, participant, or anyone with the code."""
     room = services.of(Rooms).get(code)
-    return JSONResponse(room_view(request, services, room, dict(reader or ()).get(room.code)))
+    return RecordResponse(room_view(request, services, room, dict(reader or ()).get(room.code)))
 
 
 @router.post(
     "/{code}/participants",
     status_code=201,
     summary="Join a room",
-    response_model=JoinedView,
     responses={
         **answers(201, headers=_SETS_COOKIE),
         200: {"model": JoinedView, "description": "who is in the room already"},
@@ -176,7 +176,7 @@ def join_room(
     code: CodePath,
     body: JoinBody | None = None,
     idempotency_key: IdempotencyKeyHeader = None,
-) -> Response:
+) -> RecordResponse[JoinedView]:
     """Join by the code, with neither account nor data: the name is from a list of words.
 
     A cookie keeps name and seed; who has it gets both again, with 200, as does who repeats the
@@ -190,8 +190,8 @@ def join_room(
         )
     rooms, cookie = services.of(Rooms), _cookie(services, request, code)
     joined = rooms.join(code, cookie.value, idempotency_key)
-    shown = {"name": joined.participant.name, "seed": joined.participant.seed}
-    response = JSONResponse(shown, 201 if joined.is_new else 200)
+    view = JoinedView(name=joined.participant.name, seed=joined.participant.seed)
+    response = RecordResponse(view, 201 if joined.is_new else 200)
     response.headers.append("Set-Cookie", cookie.set_header(joined.key))
     return response
 
@@ -215,24 +215,21 @@ def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
 @router.patch(
     "/{code}/participants/{seed}",
     summary="Hide the name of a participant, or approve",
-    response_model=RoomView,
 )
 @policy(access=OPERATOR)
 def change_participant(
     services: ServicesDep, request: Request, code: CodePath, seed: SeedPath, body: ParticipantBody
-) -> Response:
+) -> RecordResponse[RoomView]:
     """Change what others see of a participant."""
     room = services.of(Rooms).change_participant(code, seed, **dict(body))
-    return JSONResponse(room_view(request, services, room, None))
+    return RecordResponse(room_view(request, services, room, None))
 
 
-@router.delete(
-    "/{code}/participants/{seed}", summary="Remove a participant", response_model=RoomView
-)
+@router.delete("/{code}/participants/{seed}", summary="Remove a participant")
 @policy(access=OPERATOR)
 def remove_participant(
     services: ServicesDep, request: Request, code: CodePath, seed: SeedPath
-) -> Response:
+) -> RecordResponse[RoomView]:
     """Remove a participant: seat, name and answers; runs that wait or go on are stopped.
 
     Runs that have ended are in no results any more, and stay for operators. Who was removed may
@@ -241,57 +238,61 @@ def remove_participant(
     for run_id in services.of(Rooms).remove_participant(code, seed):
         with suppress(Conflict, NotFound):  # it has ended, or is being stopped
             services.jobs.stop(run_id)
-    return JSONResponse(room_view(request, services, services.of(Rooms).get(code), None))
+    return RecordResponse(room_view(request, services, services.of(Rooms).get(code), None))
 
 
-@router.put("/{code}/card", summary="Show a card", response_model=RoomView)
+@router.put("/{code}/card", summary="Show a card")
 @policy(access=OPERATOR)
-def show_card(services: ServicesDep, request: Request, code: CodePath, body: CardBody) -> Response:
+def show_card(
+    services: ServicesDep, request: Request, code: CodePath, body: CardBody
+) -> RecordResponse[RoomView]:
     """Show a card to all, and lock what it does not open."""
     room = services.of(Rooms).show_card(code, body.card)
-    return JSONResponse(room_view(request, services, room, None))
+    return RecordResponse(room_view(request, services, room, None))
 
 
-@router.post("/{code}/freeze", summary="Freeze all, or go on", response_model=RoomView)
+@router.post("/{code}/freeze", summary="Freeze all, or go on")
 @policy(access=OPERATOR)
 def freeze_room(
     services: ServicesDep, request: Request, code: CodePath, body: FreezeBody | None = None
-) -> Response:
+) -> RecordResponse[RoomView]:
     """Let nothing be answered or started; with `frozen` false let it be again."""
     room = services.of(Rooms).freeze(code, (body or FreezeBody()).frozen)
-    return JSONResponse(room_view(request, services, room, None))
+    return RecordResponse(room_view(request, services, room, None))
 
 
-@router.post("/{code}/reveal", summary="Reveal a card", response_model=RoomView)
+@router.post("/{code}/reveal", summary="Reveal a card")
 @policy(access=OPERATOR)
 def reveal_card(
     services: ServicesDep, request: Request, code: CodePath, body: RevealBody | None = None
-) -> Response:
+) -> RecordResponse[RoomView]:
     """Show all answers and runs of a card to all participants; it takes no more answers."""
     number = None if body is None else body.card
     shown = services.of(Rooms).get(code).card
     room = services.of(Rooms).reveal(code, shown if number is None else number)
-    return JSONResponse(room_view(request, services, room, None))
+    return RecordResponse(room_view(request, services, room, None))
 
 
-@router.post("/{code}/end", summary="End a room", response_model=RoomView)
+@router.post("/{code}/end", summary="End a room")
 @policy(access=OPERATOR)
-async def end_room(services: ServicesDep, request: Request, code: CodePath) -> Response:
+async def end_room(
+    services: ServicesDep, request: Request, code: CodePath
+) -> RecordResponse[RoomView]:
     """Close the room and its stage; its results stay."""
     room = await run_in_threadpool(services.of(Rooms).end, code)
     await services.of(RoomStages).close(room.code)
     view = await run_in_threadpool(room_view, request, services, room, None)
-    return JSONResponse(view)
+    return RecordResponse(view)
 
 
-@router.delete("/{code}", summary="Delete a room that has ended", response_model=DeletedView)
+@router.delete("/{code}", summary="Delete a room that has ended")
 @policy(access=OPERATOR)
 def delete_room(
     services: ServicesDep,
     code: CodePath,
     *,
     runs: Annotated[bool, Query(description="delete its runs, too")] = False,
-) -> Response:
+) -> RecordResponse[DeletedView]:
     """Delete a room with its participants, answers and results.
 
     Its runs stay without `runs`, as ordinary runs that all may see. The answer names the runs that
@@ -300,32 +301,30 @@ def delete_room(
     room = services.of(Rooms).ended(code)
     deleted = delete_each(services, services.of(Rooms).runs_in(room.code) if runs else [])
     services.of(Rooms).delete(code)
-    return JSONResponse(deleted)
+    return RecordResponse(deleted)
 
 
-@router.put(
-    "/{code}/spotlight", summary="Show a participant's run on the stage", response_model=RoomView
-)
+@router.put("/{code}/spotlight", summary="Show a participant's run on the stage")
 @policy(access=OPERATOR)
 def put_spotlight(
     services: ServicesDep, request: Request, code: CodePath, body: SpotlightBody
-) -> Response:
+) -> RecordResponse[RoomView]:
     """Show a run of the room on its stage, to all who watch; all participants may see it then."""
     room = services.of(Rooms).spotlight(code, body.run_id)
     shared = services.of(RoomStages).of(room.code)
     if shared is not None and body.run_id is not None:
         shared.stage.set(run_id=body.run_id, playing=True)
-    return JSONResponse(room_view(request, services, room, None))
+    return RecordResponse(room_view(request, services, room, None))
 
 
-@router.post(
-    "/{code}/predictions", status_code=201, summary="Answer a card", response_model=PredictionView
-)
+@router.post("/{code}/predictions", status_code=201, summary="Answer a card")
 @policy(access=participant("predict"))
-def predict(services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody) -> Response:
+def predict(
+    services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody
+) -> RecordResponse[PredictionView]:
     """Keep the answer of the participant who asks; it can be given once, before the reveal."""
     value = services.of(Rooms).predict(code, seed, body.card, body.value)
-    return JSONResponse({"card": body.card, "value": value}, 201)
+    return RecordResponse(PredictionView(card=body.card, value=value), 201)
 
 
 @router.post(
@@ -357,12 +356,12 @@ def start_run(
     number, shown = (room.card, room.shown) if card is None else (card, room.lesson.cards[card])
     given = starts.given(shown, settings)
     if shown.go == "what-if":
-        what_if, asker = starts.what_if(shown, given), charged_client(request.scope)
+        training, client = starts.what_if(shown, given), charged_client(request.scope)
 
-        def compute() -> dict[str, Any]:
-            return services.of(WhatIfs).ask(what_if, asker)
+        def compute() -> ComparisonView:
+            return services.of(WhatIfs).ask(training, client)
 
-        return JSONResponse(services.of(Rooms).ask(code, seed, given, compute, card=number))
+        return RecordResponse(services.of(Rooms).ask(code, seed, given, compute, card=number))
     run = services.of(Rooms).start(
         code,
         seed,
@@ -384,7 +383,6 @@ def _name(room: Room, seed: int) -> str:
 @router.get(
     "/{code}/results",
     summary="Get the results of a room (JSON, CSV)",
-    response_model=ResultsView,
     responses=answers(200, {MEDIA_TYPE: TEXT}),
 )
 @policy(access=WATCH_ROOM)
@@ -399,7 +397,7 @@ def get_results(
         bool, Query(description="as the class sees it: without those who are not approved")
     ] = False,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
-) -> Response:
+) -> RecordResponse[ResultsView] | Response:
     """Return by card what was predicted, what came of the runs, and how both compare.
 
     A participant gets their own until the reveal; others get counts alone. But for a teacher, cards
@@ -420,7 +418,7 @@ def get_results(
         return attachment(
             as_csv(results).encode(), f"{MEDIA_TYPE}; charset=utf-8", f"{room.code}.csv"
         )
-    return JSONResponse(finite(results_view(room, results)))
+    return RecordResponse(results)
 
 
 def _room_stage(services: ServicesDep, code: CodePath) -> SharedStage:

@@ -11,10 +11,12 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Table, and_, delete, exists, not_, or_, select, update
 from sqlalchemy.sql.elements import ColumnElement
 
+from app.api.answers import ComparisonView
 from app.features.classroom.tables import PARTICIPANTS, PREDICTIONS, ROOM_RUNS, ROOMS
 from app.storage.database.engine import Database
 from app.storage.database.schema import RUNS
 from app.storage.database.stored_rows import put_rows, read_rows
+from hexapods.domain.records import to_json
 
 Seat = tuple[str, int]
 """A participant: code of the room, and seed."""
@@ -106,7 +108,7 @@ class RoomRun(NamedTuple):
     is_main: bool
     is_shown: bool
     created_at: datetime
-    answer: Mapping[str, Any] | None = None
+    answer: ComparisonView | None = None
 
 
 class RoomRows:
@@ -223,7 +225,13 @@ class RoomRows:
         self._database.write(lambda connection: connection.execute(statement))
 
     def _insert(self, table: Table, rows: Sequence[Any]) -> None:
-        values = [row._asdict() for row in rows]
+        values = [
+            {
+                name: to_json(value) if isinstance(value, ComparisonView) else value
+                for name, value in row._asdict().items()
+            }
+            for row in rows
+        ]
         self._database.write(lambda connection: put_rows(connection, table, values))
 
 

@@ -5,6 +5,7 @@ from contextlib import suppress
 from datetime import datetime
 from typing import Any
 
+from app.api.answers import ComparisonView
 from app.features.classroom.room import Room, given_key
 from app.features.classroom.room_rows import RoomRows, RoomRun, Seat
 from app.features.classroom.seats import reserve_seed
@@ -15,6 +16,7 @@ from app.storage.errors import Busy, Conflict, NotFound
 from app.storage.json_text import is_finite
 from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.errors import HexapodError
+from hexapods.domain.records import from_json
 
 MAX_RUNS = 20
 """Runs of a participant on a card."""
@@ -128,7 +130,7 @@ class RoomRuns:
 
     def answer_of(
         self, room: Room, seed: int, card: int, given: Mapping[str, Any]
-    ) -> Mapping[str, Any] | None:
+    ) -> ComparisonView | None:
         """Return what the same what-if of a participant gave; None if it was not asked yet.
 
         Raises:
@@ -147,7 +149,7 @@ class RoomRuns:
         card: int,
         given: Mapping[str, Any],
         *,
-        answer: Mapping[str, Any],
+        answer: ComparisonView,
         now: datetime,
     ) -> None:
         """Keep what a what-if of a participant gave; others see it as they would see a run."""
@@ -221,10 +223,11 @@ def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
     given: Any = run.given
     if not isinstance(given, Mapping) or not is_finite(given):
         raise ValueError("given: it is no object of settings")
-    if run.answer is not None:
-        distance_m = run.answer["chosen"]["iqm_m"]
-        if not isinstance(distance_m, int | float) or not is_finite(run.answer):
-            raise ValueError("answer: its distance is no number")
+    answer: Any = run.answer
+    if answer is not None:
+        if not is_finite(answer):
+            raise ValueError("answer: it has a number that is not finite")
+        run = run._replace(answer=from_json(ComparisonView, answer))
     if run.room in rooms:
         rooms[run.room].check_card(run.card)
     return run

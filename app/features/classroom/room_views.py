@@ -1,29 +1,34 @@
-"""Rooms and their results as the API responds with them."""
+"""Rooms as the API responds with them."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Literal
 
 from fastapi import Request
 
 from app.api.deps import Services
-from app.api.spectators import link_of
+from app.api.spectators import link_to
 from app.features.classroom.lesson import Card, html_of
 from app.features.classroom.lesson_routes import lesson_view
 from app.features.classroom.lessons import FoundLesson
 from app.features.classroom.names import in_groups
-from app.features.classroom.results import CardResults, Entry, ParticipantResult
+from app.features.classroom.response_models import (
+    Me,
+    OwnAnswer,
+    OwnRun,
+    Person,
+    RoomTournament,
+    RoomView,
+)
 from app.features.classroom.room import Room
 from app.features.classroom.room_stages import path_of_room
 from app.features.classroom.rooms import Rooms
 from app.storage.database.store import RunStore
 from app.storage.errors import NotFound
-from hexapods.domain.records import to_json
 
 RoomRole = Literal["teacher", "participant", "spectator"]
 
 
-def room_view(request: Request, services: Services, room: Room, seed: int | None) -> dict[str, Any]:
+def room_view(request: Request, services: Services, room: Room, seed: int | None) -> RoomView:
     """Return a room as who asks may see it.
 
     Args:
@@ -41,44 +46,44 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
     if not is_teacher and room.card not in room.revealed:
         shown = replace(shown, reveal=None)
     lesson = FoundLesson(room.lesson_id or "", room.lesson, is_built_in=False)
-    return {
-        **room.state,
-        "role": "teacher" if is_teacher else role,
-        "shown": to_json(shown),
-        "html": html_of(shown),
-        "me": None if seed is None else _me(room, seed),
-        "people": _people(room, services.store) if is_teacher else [],
-        "lesson": lesson_view(lesson) if is_teacher else None,
-        "tournaments": services.of(Rooms).tournaments_of(room.code),
-        **link_of(request, services.settings, path_of_room(in_groups(room.code))),
-    }
+    link = link_to(request, services.settings, path_of_room(in_groups(room.code)))
+    return RoomView(
+        **vars(room.state),
+        role="teacher" if is_teacher else role,
+        shown=shown,
+        html=html_of(shown),
+        me=None if seed is None else _me(room, seed),
+        people=_people(room, services.store) if is_teacher else [],
+        lesson=lesson_view(lesson) if is_teacher else None,
+        tournaments=[
+            RoomTournament(id=tournament.id, title=tournament.title, state=tournament.state)
+            for tournament in services.of(Rooms).tournaments_of(room.code)
+        ],
+        address=link.address,
+        qr_code=link.qr_code,
+    )
 
 
-def results_view(room: Room, results: Sequence[CardResults]) -> dict[str, Any]:
-    """Return results as JSON."""
-    return {"code": room.code, "cards": [_card(card) for card in results]}
-
-
-def _me(room: Room, seed: int) -> dict[str, Any]:
-    return {
-        "name": room.participants[seed].name,
-        "seed": seed,
-        "predictions": [
-            {"card": card, "value": value}
+def _me(room: Room, seed: int) -> Me:
+    return Me(
+        name=room.participants[seed].name,
+        seed=seed,
+        predictions=[
+            OwnAnswer(card=card, value=value)
             for (participant, card), value in sorted(
                 room.predictions.items(), key=lambda item: item[0]
             )
             if participant == seed
         ],
-        "runs": [
-            {"run_id": run.run_id, "card": run.card}
+        runs=[
+            OwnRun(run_id=run.run_id, card=run.card)
             for run in room.runs.values()
             if run.is_main and run.seed == seed and run.answer is None
         ],
-    }
+    )
 
 
-def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
+def _people(room: Room, store: RunStore) -> list[Person]:
     people = []
     for seed, participant in sorted(room.participants.items()):
         newest = next(iter(reversed(room.runs_of(seed, room.card))), None)
@@ -89,52 +94,16 @@ def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
             except NotFound:
                 run = None  # deleted, or never stored
         people.append(
-            {
-                "seed": seed,
-                "name": participant.name,
-                "is_present": participant.left_at is None,
-                "is_name_hidden": participant.is_name_hidden,
-                "is_approved": participant.is_approved,
-                "joined_at": participant.joined_at.isoformat(),
-                "has_predicted": (seed, room.card) in room.predictions,
-                "run_id": None if run is None else run.id,
-                "run_state": "finished" if is_answered else None if run is None else run.state,
-            }
+            Person(
+                seed=seed,
+                name=participant.name,
+                is_present=participant.left_at is None,
+                is_name_hidden=participant.is_name_hidden,
+                is_approved=participant.is_approved,
+                joined_at=participant.joined_at,
+                has_predicted=(seed, room.card) in room.predictions,
+                run_id=None if run is None else run.id,
+                run_state="finished" if is_answered else None if run is None else run.state,
+            )
         )
     return people
-
-
-def _card(results: CardResults) -> dict[str, Any]:
-    interval = results.interval
-    return {
-        "card": results.card,
-        "title": results.title,
-        "ask": None if results.ask is None else to_json(results.ask),
-        "is_revealed": results.is_revealed,
-        "participants": results.participants,
-        "predicted": results.predicted,
-        "finished": results.finished,
-        "entries": [_entry(entry) for entry in results.entries],
-        "distances_m": results.distances_m,
-        "interval": None if interval is None else interval.as_json("iqm", "_m"),
-        "answer": results.answer,
-    }
-
-
-def _entry(entry: Entry) -> dict[str, Any]:
-    run, score = entry.run, entry.score
-    shown = {**entry._asdict(), "score": None if score is None else to_json(score)}
-    return {**shown, "run": None if run is None else _run(run, is_own=entry.is_own)}
-
-
-def _run(run: ParticipantResult, *, is_own: bool) -> dict[str, Any]:
-    return {
-        "id": run.id,
-        "kind": run.kind,
-        "state": run.state,
-        "given": run.given,
-        "distance_m": run.outcome.distance_m,
-        "winners": list(run.outcome.winners),
-        "rank": run.rank,
-        "answer": run.answer if is_own else None,
-    }

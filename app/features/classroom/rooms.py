@@ -6,10 +6,11 @@ All is written to the database before it counts, so that a server that is killed
 import logging
 import secrets
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from app.api.answers import ComparisonView
 from app.feature import DeleteRuns
 from app.features.classroom.lesson import Lesson, plain, read_lesson
 from app.features.classroom.lessons import FoundLesson
@@ -76,7 +77,7 @@ class Rooms:
         """Whether a participant's page is open."""
         self.has_entered: Callable[[Seat], bool] = lambda seat: False  # noqa: ARG005
         """Whether a participant has entered a tournament."""
-        self.tournaments_of: Callable[[str], list[dict[str, Any]]] = lambda code: []  # noqa: ARG005
+        self.tournaments_of: Callable[[str], Sequence[Any]] = lambda code: []  # noqa: ARG005
         """Returns the tournaments of a room by its code, as `RoomTournament`."""
         self.on_seat_taken: Callable[[Seat], object] = lambda seat: None  # noqa: ARG005
         """Called for each participant who has lost their seat, or has left."""
@@ -538,10 +539,10 @@ class Rooms:
         code: str,
         seed: int,
         given: Mapping[str, Any],
-        compute: Callable[[], Mapping[str, Any]],
+        compute: Callable[[], ComparisonView],
         *,
         card: int,
-    ) -> Mapping[str, Any]:
+    ) -> ComparisonView:
         """Return what the what-if of the card that is shown gives, and keep it; see `start`.
 
         Args:

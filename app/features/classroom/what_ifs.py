@@ -1,7 +1,8 @@
 """What-ifs of cards, as far as that feature is there."""
 
-from typing import Any, ClassVar, Protocol, cast
+from typing import ClassVar, Protocol, cast
 
+from app.api.answers import ComparisonView
 from app.api.work import OTHER, Work
 from app.feature import Feature
 from app.storage.errors import NotFound
@@ -13,7 +14,7 @@ class _WhatIfFeature(Protocol):
 
     work: ClassVar[Work]
 
-    def ask_as_spectator(self, training: TrainingConfig, client: str) -> dict[str, Any]: ...
+    def ask_as_spectator(self, training: TrainingConfig, client: str) -> ComparisonView: ...
 
 
 class WhatIfs:
@@ -28,8 +29,8 @@ class WhatIfs:
         """Kind of work of a what-if."""
         return OTHER if self._feature is None else self._feature.work
 
-    def ask(self, training: TrainingConfig, client: str) -> dict[str, Any]:
-        """Return the answer to a what-if, a `ComparisonView`.
+    def ask(self, training: TrainingConfig, client: str) -> ComparisonView:
+        """Return the answer to a what-if.
 
         Args:
             training: what is compared with its defaults.

@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from app.api.answers import Answer, Count
+from app.answer import Answer, Count
 
 
 class AllowanceView(Answer):

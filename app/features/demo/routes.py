@@ -1,16 +1,18 @@
 """Routes of a demo: what a visitor may still start, and for operators who has started what."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 from fastapi import Path
-from starlette.responses import JSONResponse, Response
 
 from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep
 from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.record_response import RecordResponse
 from app.features.demo.access import Visitor
 from app.features.demo.allowance import HOUR
 from app.features.demo.expiry import Expiry
-from app.features.demo.response_models import AllowanceView, VisitorList
+from app.features.demo.response_models import AllowanceView, VisitorList, VisitorView
+from app.features.demo.rows import VisitorRun
 from app.features.demo.settings import DemoSettings
 from app.features.demo.visitors import Visitors
 from app.storage.errors import Forbidden, NotFound
@@ -25,56 +27,53 @@ ROBOTS_TXT = "User-agent: *\nDisallow: /api/\nDisallow: /viewer/\nDisallow: /r/\
 @router.get(
     "/allowance",
     summary="Get what a visitor of a demo may start, and what is left of it",
-    response_model=AllowanceView,
     responses={404: {}},
 )
 @policy(access=WATCH)
-def get_allowance(services: ServicesDep, identity: IdentityDep) -> Response:
+def get_allowance(services: ServicesDep, identity: IdentityDep) -> RecordResponse[AllowanceView]:
     """Return the limits of each visitor, what who asks has left, and the ids of their runs."""
     _check_demo(services)
     allowance = services.of(Visitors).allowance
     used = services.of(Visitors).use(identity.cookie.value if isinstance(identity, Visitor) else "")
-    answer = {
-        "steps_per_hour": allowance.steps_per_hour,
-        "steps_left": max(0, allowance.steps_per_hour - used.steps),
-        "steps_per_start": min(allowance.steps_per_start, allowance.steps_per_hour),
-        "least_steps": allowance.least_steps,
-        "max_unended": allowance.unended,
-        "unended": used.unended,
-        "max_kept": allowance.kept,
-        "seconds_per_run": allowance.seconds_per_run,
-        "hours": allowance.hours,
-        "runs": list(used.kept),
-    }
-    return JSONResponse(answer)
+    view = AllowanceView(
+        steps_per_hour=allowance.steps_per_hour,
+        steps_left=max(0, allowance.steps_per_hour - used.steps),
+        steps_per_start=min(allowance.steps_per_start, allowance.steps_per_hour),
+        least_steps=allowance.least_steps,
+        max_unended=allowance.unended,
+        unended=used.unended,
+        max_kept=allowance.kept,
+        seconds_per_run=allowance.seconds_per_run,
+        hours=allowance.hours,
+        runs=list(used.kept),
+    )
+    return RecordResponse(view)
 
 
 @router.get(
     "/visitors",
     summary="List the visitors of a demo",
-    response_model=VisitorList,
     responses={404: {}},
 )
 @policy(access=WATCH)
-def list_visitors(services: ServicesDep, role: RoleDep) -> Response:
+def list_visitors(services: ServicesDep, role: RoleDep) -> RecordResponse[VisitorList]:
     """Return the visitors of whom something is kept or counted; for operators alone."""
     _check_demo(services)
     if role != "operator":
         raise Forbidden("the visitors of a demo are shown to its operators alone")
-    items = []
-    for visitor, runs in services.of(Visitors).by_visitor().items():
-        newest = max(run.created_at for run in runs)
-        items.append(
-            {
-                "id": visitor,
-                "since": min(run.created_at for run in runs).isoformat(),
-                "newest": newest.isoformat(),
-                "steps": sum(run.steps for run in runs if newest - run.created_at < HOUR),
-                "runs": [run.run_id for run in runs],
-            }
-        )
-    return JSONResponse(
-        {"items": sorted(items, key=lambda item: str(item["newest"]), reverse=True)}
+    visitors = [_visitor(*item) for item in services.of(Visitors).by_visitor().items()]
+    newest_first = sorted(visitors, key=lambda visitor: visitor.newest, reverse=True)
+    return RecordResponse(VisitorList(items=newest_first))
+
+
+def _visitor(visitor_id: str, runs: Sequence[VisitorRun]) -> VisitorView:
+    newest = max(run.created_at for run in runs)
+    return VisitorView(
+        id=visitor_id,
+        since=min(run.created_at for run in runs),
+        newest=newest,
+        steps=sum(run.steps for run in runs if newest - run.created_at < HOUR),
+        runs=[run.run_id for run in runs],
     )
 
 

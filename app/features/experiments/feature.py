@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from fastapi import APIRouter
-from pydantic import BaseModel
 
+from app.answer import Answer
 from app.api.policy import OPERATOR
 from app.api.starts import StartKind
 from app.feature import Feature
@@ -35,7 +35,7 @@ class ExperimentFeature(Feature):
     damage_advice: ClassVar[Mapping[str, str]] = {
         "trials": "delete these experiments, or put a backup back"
     }
-    event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {"summary": SummaryEvent}
+    event_bodies: ClassVar[Mapping[str, type[Answer]]] = {"summary": SummaryEvent}
     option_types: ClassVar[Mapping[str, Any]] = {"experiments": list[ExperimentOption]}
 
     @classmethod

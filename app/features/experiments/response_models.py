@@ -1,10 +1,12 @@
 """Response models of experiments: runs, summary, trials, options and events; see `answers`."""
 
+from dataclasses import field
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.answers import Answer, Count, Page, RunView
+from app.answer import Answer, Count
+from app.api.answers import Page, RunView
 from app.api.option_answers import Described
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
@@ -86,7 +88,7 @@ class TrialFigures(Answer):
     transitions: Count
     wall: list[WallLane] | None
     failure: str | None
-    earned_m: list[float] = Field(default_factory=list)
+    earned_m: list[float] = field(default_factory=list)
 
 
 class TrialRow(Answer):
@@ -121,7 +123,7 @@ class SummaryCounts(Answer):
     done: Count
     total: Count
     failed: Count
-    failures: list[Reason] = Field(default_factory=list)
+    failures: list[Reason] = field(default_factory=list)
     set_aside: list[Reason]
 
 
@@ -206,7 +208,7 @@ class Named(Parameters):
     half_side_m: float
 
 
-class Measured(Answer):
+class Measured(BaseModel):
     """Comparisons with the greedy agent and the best known distance; null where undefined."""
 
     relative: Interval95 | None
@@ -376,7 +378,7 @@ class SummaryView(Answer):
     curves: list[CurveOfSetting]
     versus: list[VersusView]
     timed: list[TimedView]
-    worlds: list[WorldView] = Field(default_factory=list)
+    worlds: list[WorldView] = field(default_factory=list)
     claims: list[ClaimView]
     story: list[NarrativeSection]
     finding: str = ""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.api.answers import Answer, Count
+from app.answer import Answer, Count
 from hexapods.runs.clocks import Clock
 
 Cell = Annotated[int, Field(ge=0, description="cell of the foot grid; 0 is home")]

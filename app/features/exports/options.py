@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from app.api.answers import Answer
+from app.answer import Answer
 from hexapods.exports.registry import EXPORTS
 
 

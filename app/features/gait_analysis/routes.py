@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
 from fastapi import Query
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.deps import Services, ServicesDep
 from app.api.descriptions import VALID
@@ -15,7 +15,7 @@ from app.api.work import ANALYSIS
 from app.storage.errors import Conflict, Damaged
 from app.storage.run import DamagedRun, Run, world_of
 from app.storage.run_kind import with_article
-from hexapods.domain.records import Record, to_json
+from hexapods.domain.records import Record, to_json_bytes
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.gait_analysis import MAX_WINDOW_S, GaitFigures, gait_figures, window_of
 from hexapods.runs.race_config import RaceConfig
@@ -107,12 +107,12 @@ def get_gait(
     recorded = tuple((walk.from_s, walk.to_s) for walk in shown.walks)
     key = ("gait", run.id, shown.part, window, recorded, shown.step, len(run.changes))
 
-    def answer() -> bytes:
-        # It may have waited for others.
+    def compute() -> bytes:
+        # It may have waited for other requests.
         services.stopping.check()
-        return _answer(shown, *window)
+        return to_json_bytes(_analysis(shown, *window))
 
-    return Response(services.shared_answers.computed(key, answer), media_type="application/json")
+    return Response(services.shared_answers.computed(key, compute), media_type="application/json")
 
 
 class _Walks(NamedTuple):
@@ -137,7 +137,7 @@ def _walks(services: Services, run: Run, part: TrainingPart, from_s: float | Non
         if lanes is None:
             raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
         agents = [lane.agent for lane in config.lanes]
-        return _Walks("race", agents, [walk_of_lane(one, config, world_of(run)) for one in lanes])
+        return _Walks("race", agents, [walk_of_lane(lane, config, world_of(run)) for lane in lanes])
     if not isinstance(config, TrainingConfig):
         kind = with_article(run.kind)
         raise Conflict(f"{run.id} is {kind}, whose walks are not recorded", run.state)
@@ -156,13 +156,13 @@ def _walks(services: Services, run: Run, part: TrainingPart, from_s: float | Non
     return _Walks(part, [config.agent], [walk], evaluation.step)
 
 
-def _answer(shown: _Walks, from_s: float, to_s: float) -> bytes:
+def _analysis(shown: _Walks, from_s: float, to_s: float) -> GaitAnalysis:
     lanes = [
         _lane(agent, walk, from_s, to_s)
         for agent, walk in zip(shown.agents, shown.walks, strict=True)
     ]
     step_s = shown.walks[0].problem.robot.step_s
-    return bytes(JSONResponse(to_json(GaitAnalysis(shown.part, step_s, lanes))).body)
+    return GaitAnalysis(shown.part, step_s, lanes)
 
 
 def _lane(agent: str, walk: RecordedWalk, from_s: float, to_s: float) -> GaitLane:

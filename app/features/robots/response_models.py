@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.api.answers import Answer
+from app.answer import Answer
 from app.storage.database.robots import RobotOrigin
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.creatures import own_gait

@@ -12,6 +12,7 @@ from dataclasses import fields, replace
 from pprint import pformat
 from typing import Any, NamedTuple
 
+from app.answer import Answer
 from app.storage.database.store import RunStore
 from app.storage.errors import Damaged, NotFound
 from app.storage.run import Run, robots_of, world_of
@@ -42,8 +43,8 @@ Arguments = dict[str, Any]
 _IMPORT = "import hexapods as hx"
 
 
-class RunAsCode(NamedTuple):
-    """A run as code."""
+class CodeView(Answer):
+    """A run as commands for a shell, and as a Python program."""
 
     command: str
     python: str
@@ -58,7 +59,7 @@ class _Code(NamedTuple):
         return self.text
 
 
-def run_code(run: Run, store: RunStore, address: str) -> RunAsCode:
+def run_code(run: Run, store: RunStore, address: str) -> CodeView:
     """Return the code of a run.
 
     Args:
@@ -80,7 +81,7 @@ def run_code(run: Run, store: RunStore, address: str) -> RunAsCode:
     for config in filter(None, practices.configs):
         robots.add([config.robot])
     python = "\n\n".join([_IMPORT, *practices.calls]) + "\n"
-    return robots.before(RunAsCode(_lines(practices.commands), python))
+    return robots.before(CodeView(command=_lines(practices.commands), python=python))
 
 
 class _Robots:
@@ -99,7 +100,7 @@ class _Robots:
             if robot.id is not None:
                 self._names[robot.id] = as_mapping(robot)["name"]
 
-    def before(self, code: RunAsCode) -> RunAsCode:
+    def before(self, code: CodeView) -> CodeView:
         """Return the code with what makes the robots known before it."""
         commands, calls = "", ""
         for robot_id, name in self._names.items():
@@ -109,7 +110,8 @@ class _Robots:
                 f"hexapods robots import {file} --name {shlex.quote(name)}\n"
             )
             calls += f"\n\n# {url}\nhx.load_robot({file!r}, {name!r})"
-        return RunAsCode(commands + code.command, code.python.replace(_IMPORT, _IMPORT + calls, 1))
+        python = code.python.replace(_IMPORT, _IMPORT + calls, 1)
+        return CodeView(command=commands + code.command, python=python)
 
 
 class _Practices:
@@ -368,7 +370,7 @@ def _lines(commands: Iterable[str]) -> str:
 _REPEATED = {"gaits": "--gait", "robots": "--robot", "agents": "--agent", "worlds": "--world"}
 
 
-def _experiment(config: ExperimentConfig) -> RunAsCode:
+def _experiment(config: ExperimentConfig) -> CodeView:
     name, given = config.experiment, _experiment_differences(config)
     options: list[tuple[str, str]] = []
     for key, value in given.items():
@@ -387,7 +389,7 @@ def _experiment(config: ExperimentConfig) -> RunAsCode:
         f"    experiment = {_indented(call)}\n"
         '    print(*experiment.settings, sep="\\n")\n'
     )
-    return RunAsCode(_lines([_command(program, options)]), python)
+    return CodeView(command=_lines([_command(program, options)]), python=python)
 
 
 def _part(value: Any) -> str:

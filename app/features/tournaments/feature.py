@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from fastapi import APIRouter
-from pydantic import BaseModel
 from sqlalchemy import Column
 from starlette.routing import BaseRoute
 
+from app.answer import Answer
 from app.api.deps import Services
 from app.api.option_answers import SettingOption
 from app.api.pages import page_content
@@ -20,11 +20,11 @@ from app.features.tournaments import pages, routes
 from app.features.tournaments.access import ENTER_TOURNAMENT, WATCH_TOURNAMENT
 from app.features.tournaments.judge import Judge
 from app.features.tournaments.request_bodies import tournament_fields
-from app.features.tournaments.response_models import TournamentEvent
 from app.features.tournaments.room_directory import RoomDirectory
 from app.features.tournaments.tables import METADATA, TOURNAMENTS
+from app.features.tournaments.tournament import TournamentEvent
 from app.features.tournaments.tournaments import Tournaments
-from app.features.tournaments.views import publish, tournaments_of_room
+from app.features.tournaments.views import publish
 from app.settings import Settings
 from app.storage.database.store import RunStore
 from hexapods.machine import cores
@@ -56,7 +56,7 @@ class TournamentFeature(Feature):
         "tournament_tables": f"{_BACKUP}; an entry that is not judged yet fails",
     }
     state_events = ("tournament",)
-    event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {"tournament": TournamentEvent}
+    event_bodies: ClassVar[Mapping[str, type[Answer]]] = {"tournament": TournamentEvent}
     option_types: ClassVar[Mapping[str, Any]] = {"tournament_fields": dict[str, SettingOption]}
 
     def __init__(self, core: Services) -> None:
@@ -72,7 +72,7 @@ class TournamentFeature(Feature):
                 classroom.access.share(
                     access, lambda params: self.tournaments.room_of(params["tournament_id"])
                 )
-            classroom.rooms.tournaments_of = partial(tournaments_of_room, self.tournaments)
+            classroom.rooms.tournaments_of = self.tournaments.of_room
 
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:

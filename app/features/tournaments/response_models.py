@@ -1,17 +1,17 @@
 """Response models of tournaments, as those of `app.api.answers`."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
-from app.api.answers import Answer, Count
+from app.answer import Answer, Count
+from app.features.tournaments.tournament import EntryState, TournamentState
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import Draw, TournamentRules
 
-TournamentState = Literal["open", "ending", "ended"]
 Hexadecimal = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
@@ -58,7 +58,7 @@ class EntryView(Answer):
     is_own: bool
     entry: EntryConfig | None
     training_id: str | None
-    state: Literal["waiting", "judging", "judged", "withdrawn"]
+    state: EntryState
     judged: Count
     of: Count
     judgements: list[Judgement] | None
@@ -120,18 +120,3 @@ class TournamentView(Answer):
     secret: Hexadecimal | None
     draws: list[Draw] | None
     file: str | None
-
-
-class TournamentEvent(Answer):
-    """A tournament has changed; `GET /tournaments/{tournament_id}` has it.
-
-    Attributes:
-        entries: number of its entries, without the references.
-        judged, of: number of draws that are judged, over all entries and references, and of all.
-    """
-
-    id: str
-    state: TournamentState | Literal["deleted"]
-    entries: Count
-    judged: Count
-    of: Count

@@ -4,13 +4,14 @@ from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.budgeted_chunks import BudgetedChunks
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment
 from app.api.policy import ANY_PAGE, OPERATOR, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.work import DOWNLOAD
 from app.features.tournaments.access import (
     ENTER_TOURNAMENT,
@@ -21,7 +22,12 @@ from app.features.tournaments.access import (
 from app.features.tournaments.ended_file import file_of
 from app.features.tournaments.entered_tables import entry_of_training
 from app.features.tournaments.request_bodies import EndBody, EntryBody, TournamentBody, entry_body
-from app.features.tournaments.response_models import EntryView, TournamentList, TournamentView
+from app.features.tournaments.response_models import (
+    EntryView,
+    ListedTournament,
+    TournamentList,
+    TournamentView,
+)
 from app.features.tournaments.room_directory import RoomDirectory
 from app.features.tournaments.tournament import EnteredTable, Entrant, Tournament
 from app.features.tournaments.tournaments import Tournaments
@@ -29,7 +35,6 @@ from app.features.tournaments.views import (
     check_may_enter,
     check_may_know,
     entry_view,
-    listed_tournament,
     name_for_others,
     seed_of,
     tournament_view,
@@ -49,11 +54,12 @@ router = api_router(prefix="/tournaments", tags=["tournaments"])
     "",
     status_code=201,
     summary="Open a tournament",
-    response_model=TournamentView,
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
 )
 @policy(access=OPERATOR, starts=True)
-def open_tournament(services: ServicesDep, request: Request, body: TournamentBody) -> Response:
+def open_tournament(
+    services: ServicesDep, request: Request, body: TournamentBody
+) -> RecordResponse[TournamentView]:
     """Open a tournament: its secret is drawn, and the secret's SHA-256 shown.
 
     With a room its participants may enter; without one operators alone. The references greedy,
@@ -67,52 +73,57 @@ def open_tournament(services: ServicesDep, request: Request, body: TournamentBod
     tournament = services.of(Tournaments).create(rules, body.title, code, body.entries_per_hour)
     location = request.url_for("get_tournament", tournament_id=tournament.id).path
     view = tournament_view(request, services, tournament, None)
-    return JSONResponse(view, 201, {"Location": location})
+    return RecordResponse(view, 201, {"Location": location})
 
 
-@router.get(
-    "", summary="List the tournaments that who asks may know", response_model=TournamentList
-)
+@router.get("", summary="List the tournaments that who asks may know")
 @policy(access=ANY_PAGE)
-def list_tournaments(services: ServicesDep, reader: ReaderDep) -> Response:
+def list_tournaments(services: ServicesDep, reader: ReaderDep) -> RecordResponse[TournamentList]:
     """Return all to operators; to others those without a room, and those of their rooms."""
     codes = {None, *dict(reader or ())}
     items = [
-        listed_tournament(tournament)
+        ListedTournament(
+            id=tournament.id,
+            title=tournament.title,
+            room=tournament.room,
+            state=tournament.state,
+            entries=tournament.entered,
+            created_at=tournament.created_at,
+        )
         for tournament in reversed(services.of(Tournaments).all())
         if reader is None or tournament.room in codes
     ]
-    return JSONResponse({"items": items})
+    return RecordResponse(TournamentList(items=items))
 
 
-@router.get("/{tournament_id}", summary="Get a tournament", response_model=TournamentView)
+@router.get("/{tournament_id}", summary="Get a tournament")
 @policy(access=WATCH_TOURNAMENT, depends_on_state=False)
 def get_tournament(
     services: ServicesDep, request: Request, tournament_id: TournamentPath, reader: ReaderDep
-) -> Response:
+) -> RecordResponse[TournamentView]:
     """Return the tournament as who asks may see it; its draws only once it has ended.
 
     A tournament of a room is for its participants until it or the room has ended.
     """
     tournament = _known(services, tournament_id, reader)
-    return JSONResponse(tournament_view(request, services, tournament, reader))
+    return RecordResponse(tournament_view(request, services, tournament, reader))
 
 
-@router.post("/{tournament_id}/end", summary="End a tournament", response_model=TournamentView)
+@router.post("/{tournament_id}/end", summary="End a tournament")
 @policy(access=OPERATOR)
 def end_tournament(
     services: ServicesDep,
     request: Request,
     tournament_id: TournamentPath,
     body: EndBody | None = None,
-) -> Response:
+) -> RecordResponse[TournamentView]:
     """Take no more entries; once all are judged, secret and draws are published.
 
     With `withdraw_waiting` what is not judged yet is not, but for the references.
     """
     withdraws = (body or EndBody()).withdraw_waiting
     tournament = services.of(Tournaments).end(tournament_id, withdraw_waiting=withdraws)
-    return JSONResponse(tournament_view(request, services, tournament, None))
+    return RecordResponse(tournament_view(request, services, tournament, None))
 
 
 @router.get(
@@ -155,7 +166,6 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
         tags=["tournaments"],
         status_code=202,
         summary="Enter a tournament",
-        response_model=EntryView,
         responses={
             **answers(202),
             200: {"model": EntryView, "description": "an equal entry of the same entrant"},
@@ -167,7 +177,7 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
         tournament_id: TournamentPath,
         reader: ReaderDep,
         body: body_type,
-    ) -> Response:
+    ) -> RecordResponse[EntryView]:
         """Enter: participants of the tournament's room by their name there, and operators.
 
         What is judged alike is entered once. A participant may enter so often an hour as the
@@ -186,7 +196,7 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
             lambda: check_may_enter(services.of(RoomDirectory), tournament, reader),
         )
         view = entry_view(services.of(RoomDirectory), tournament, entered.entry, reader)
-        return JSONResponse(view, 202 if entered.is_new else 200)
+        return RecordResponse(view, 202 if entered.is_new else 200)
 
     return entries
 

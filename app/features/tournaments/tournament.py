@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 from annotated_types import Ge, Le
 
+from app.answer import Answer, Count
 from app.storage.errors import Conflict
 from hexapods.domain.settings import Setting
 from hexapods.tournaments.entry import EntryConfig
@@ -85,6 +86,21 @@ class TournamentEntry:
         return tuple(judgement for _, judgement in sorted({**self.judgements}.items()))
 
 
+class TournamentEvent(Answer):
+    """A tournament has changed; `GET /tournaments/{tournament_id}` has it.
+
+    Attributes:
+        entries: number of its entries, without the references.
+        judged, of: number of draws that are judged, over all entries and references, and of all.
+    """
+
+    id: str
+    state: TournamentState | Literal["deleted"]
+    entries: Count
+    judged: Count
+    of: Count
+
+
 @dataclass
 class Tournament:
     """A tournament, as it is in the database.
@@ -134,16 +150,16 @@ class Tournament:
         return list(self.entries.values())
 
     @property
-    def progress(self) -> dict[str, Any]:
-        """What all may know of it, in plain types, as its event has it."""
+    def progress(self) -> TournamentEvent:
+        """Return its state, and how far its entries are judged, as all may know."""
         counted = [entry for entry in self.listed if not entry.is_withdrawn]
-        return {
-            "id": self.id,
-            "state": self.state,
-            "entries": self.entered,
-            "judged": sum(len(entry.judgements) for entry in counted),
-            "of": len(counted) * self.rules.draws,
-        }
+        return TournamentEvent(
+            id=self.id,
+            state=self.state,
+            entries=self.entered,
+            judged=sum(len(entry.judgements) for entry in counted),
+            of=len(counted) * self.rules.draws,
+        )
 
     @property
     def entered(self) -> int:

@@ -1,20 +1,24 @@
 """Tournaments as the API responds with them, and who may know what of them."""
 
-from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from fastapi import Request
 
 from app.api.deps import Services
 from app.api.problems import as_sentence
-from app.api.spectators import link_of
+from app.api.spectators import link_to
 from app.features.tournaments.access import Reader
+from app.features.tournaments.response_models import (
+    EntryView,
+    OwnEntries,
+    TournamentView,
+)
 from app.features.tournaments.room_directory import RoomDirectory
 from app.features.tournaments.tournament import Entrant, Tournament, TournamentEntry
 from app.features.tournaments.tournaments import Tournaments
 from app.storage.errors import Conflict, Forbidden, NotFound
 from app.viewer.shared_stage import SharedStage
-from hexapods.domain.records import to_json
 
 _OPERATORS_ALONE = "operators alone enter this tournament, as it has no room"
 _OF_A_ROOM = (
@@ -65,84 +69,71 @@ def check_may_enter(rooms: RoomDirectory, tournament: Tournament, reader: Reader
     tournament.check_open()
 
 
-def listed_tournament(tournament: Tournament) -> dict[str, Any]:
-    """Return a tournament in a list."""
-    return {
-        "id": tournament.id,
-        "title": tournament.title,
-        "room": tournament.room,
-        "state": tournament.state,
-        "entries": tournament.entered,
-        "created_at": tournament.created_at.isoformat(),
-    }
-
-
-def tournaments_of_room(tournaments: Tournaments, code: str) -> list[dict[str, Any]]:
-    """Return the tournaments of a room, as its view has them."""
-    return [
-        {"id": one.id, "title": one.title, "state": one.state} for one in tournaments.of_room(code)
-    ]
-
-
 def tournament_view(
     request: Request, services: Services, tournament: Tournament, reader: Reader
-) -> dict[str, Any]:
+) -> TournamentView:
     """Return a tournament as a reader may see it."""
     has_ended = tournament.state == "ended"
     file = request.url_for("get_tournament_file", tournament_id=tournament.id).path
-    return {
-        **listed_tournament(tournament),
-        "rules": to_json(tournament.rules),
-        "commitment": tournament.commitment,
-        "entries_per_hour": tournament.entries_per_hour,
-        "ended_at": None if tournament.ended_at is None else tournament.ended_at.isoformat(),
-        **link_of(request, services.settings, f"/t/{tournament.id}"),
-        "entries": [
-            entry_view(services.of(RoomDirectory), tournament, one, reader)
-            for one in tournament.listed
+    link = link_to(request, services.settings, f"/t/{tournament.id}")
+    return TournamentView(
+        id=tournament.id,
+        title=tournament.title,
+        room=tournament.room,
+        state=tournament.state,
+        rules=tournament.rules,
+        commitment=tournament.commitment,
+        entries_per_hour=tournament.entries_per_hour,
+        created_at=tournament.created_at,
+        ended_at=tournament.ended_at,
+        address=link.address,
+        qr_code=link.qr_code,
+        entries=[
+            entry_view(services.of(RoomDirectory), tournament, entry, reader)
+            for entry in tournament.listed
         ],
-        "standings": [to_json(one) for one in tournament.standings],
-        "own": _own(services, tournament, reader),
-        "is_operator": reader is None,
-        "may_end": reader is None and tournament.state == "open",
-        "secret": tournament.secret if has_ended else None,
-        "draws": [to_json(one) for one in tournament.draws] if has_ended else None,
-        "file": file if has_ended else None,
-    }
+        standings=list(tournament.standings),
+        own=_own(services, tournament, reader),
+        is_operator=reader is None,
+        may_end=reader is None and tournament.state == "open",
+        secret=tournament.secret if has_ended else None,
+        draws=list(tournament.draws) if has_ended else None,
+        file=file if has_ended else None,
+    )
 
 
 def entry_view(
-    rooms: RoomDirectory, tournament: Tournament, one: TournamentEntry, reader: Reader
-) -> dict[str, Any]:
+    rooms: RoomDirectory, tournament: Tournament, entry: TournamentEntry, reader: Reader
+) -> EntryView:
     """Return an entry as a reader may see it: that of others only after the end."""
-    is_own = not one.is_reference and one.entrant.seed == seed_of(tournament, reader)
-    is_own = is_own and (reader is None or one.entrant.seed is not None)
+    is_own = not entry.is_reference and entry.entrant.seed == seed_of(tournament, reader)
+    is_own = is_own and (reader is None or entry.entrant.seed is not None)
     has_ended = tournament.state == "ended"
-    is_shown = has_ended or is_own or one.is_reference or reader is None
-    return {
-        "number": one.number,
-        "name": _name(rooms, tournament, one, sees_all=is_own or reader is None),
-        "is_reference": one.is_reference,
-        "is_own": is_own,
-        "entry": to_json(one.entry) if is_shown else None,
-        "training_id": one.training_id if is_shown else None,
-        "state": tournament.state_of(one),
-        "judged": len(one.judgements),
-        "of": tournament.rules.draws,
-        "judgements": [to_json(judgement) for judgement in one.in_order()] if has_ended else None,
-        "entered_at": one.entered_at.isoformat(),
-    }
+    is_shown = has_ended or is_own or entry.is_reference or reader is None
+    return EntryView(
+        number=entry.number,
+        name=_name(rooms, tournament, entry, sees_all=is_own or reader is None),
+        is_reference=entry.is_reference,
+        is_own=is_own,
+        entry=entry.entry if is_shown else None,
+        training_id=entry.training_id if is_shown else None,
+        state=tournament.state_of(entry),
+        judged=len(entry.judgements),
+        of=tournament.rules.draws,
+        judgements=list(entry.in_order()) if has_ended else None,
+        entered_at=entry.entered_at,
+    )
 
 
-def name_for_others(rooms: RoomDirectory, tournament: Tournament, one: TournamentEntry) -> str:
+def name_for_others(rooms: RoomDirectory, tournament: Tournament, entry: TournamentEntry) -> str:
     """Return the name of an entry's entrant as all may know it, as in the tournament's file."""
-    return _name(rooms, tournament, one, sees_all=False) or f"Entry {one.number}"
+    return _name(rooms, tournament, entry, sees_all=False) or f"Entry {entry.number}"
 
 
 def _name(
-    rooms: RoomDirectory, tournament: Tournament, one: TournamentEntry, *, sees_all: bool
+    rooms: RoomDirectory, tournament: Tournament, entry: TournamentEntry, *, sees_all: bool
 ) -> str | None:
-    seed, name = one.entrant
+    seed, name = entry.entrant
     if seed is None:
         return name or "Operator"
     room = room_of(rooms, tournament)
@@ -153,7 +144,7 @@ def _name(
     return str(room.participants[seed].name) if sees_all else shown
 
 
-def _own(services: Services, tournament: Tournament, reader: Reader) -> dict[str, Any]:
+def _own(services: Services, tournament: Tournament, reader: Reader) -> OwnEntries:
     """Return what a reader may enter."""
     left, next_at, reason = None, None, None
     seed = seed_of(tournament, reader)
@@ -167,21 +158,16 @@ def _own(services: Services, tournament: Tournament, reader: Reader) -> dict[str
             reason = f"You have used up your {per_hour} entries of this hour."
     except (Forbidden, Conflict) as error:
         reason = as_sentence(str(error))
-    return {
-        "may_enter": reason is None,
-        "reason": reason,
-        "left": left,
-        "next_at": None if next_at is None else next_at.isoformat(),
-    }
+    return OwnEntries(may_enter=reason is None, reason=reason, left=left, next_at=next_at)
 
 
 def publish(
     common: SharedStage, rooms: RoomDirectory, tournament: Tournament, is_deleted: bool
 ) -> None:
-    """Tell of a tournament that has changed, on the common stage and on its room's; any thread."""
-    progress: Mapping[str, Any] = tournament.progress
+    """Publish that a tournament has changed, on the common stage and its room's; any thread."""
+    progress = tournament.progress
     if is_deleted:
-        progress = {**progress, "state": "deleted"}
+        progress = replace(progress, state="deleted")
     of_room = None if tournament.room is None else rooms.stage_of(tournament.room)
     for shared in filter(None, (common, of_room)):
         shared.channel.publish("tournament", progress, tournament.id)

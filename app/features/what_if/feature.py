@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from fastapi import APIRouter
 
+from app.api.answers import ComparisonView
 from app.api.deps import Services
 from app.api.starts import StartKind
 from app.feature import Feature
@@ -57,7 +58,7 @@ class WhatIfFeature(Feature):
         self._what_if.close()
         self._estimates.close()
 
-    def ask_as_spectator(self, training: TrainingConfig, client: str) -> dict[str, Any]:
+    def ask_as_spectator(self, training: TrainingConfig, client: str) -> ComparisonView:
         """Answer the what-if of a spectator, for features that let their clients ask; see `WhatIf`.
 
         Args:

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from app.api.answers import Answer
+from app.answer import Answer
 
 
 class EstimateView(Answer):

@@ -5,13 +5,13 @@ from functools import partial
 from typing import Any
 
 from fastapi import APIRouter, Request
-from starlette.responses import JSONResponse, Response
 
 from app.api.agent_bodies import agent_bodies
 from app.api.answers import ComparisonView
 from app.api.deps import RoleDep, Services, ServicesDep
 from app.api.identity import charged_client
 from app.api.policy import OPERATOR, QUESTION, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.starts import StartKind
 from app.features.what_if.allowance import WHAT_IF, WhatIfAllowance
 from app.features.what_if.estimate import Estimates
@@ -49,7 +49,6 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
     @router.post(
         "/what-if",
         tags=["what-if"],
-        response_model=ComparisonView,
         summary=f"Compare {SEEDS} seeds of a practice with {SEEDS} of the defaults",
         description=(
             f"Take a training's body, of at most {MAX_STEPS:,} steps; always use the kinematic "
@@ -60,14 +59,14 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
     @policy(access=QUESTION, work=WHAT_IF)
     def ask(
         services: ServicesDep, request: Request, role: RoleDep, body: training_body
-    ) -> Response:
+    ) -> RecordResponse[ComparisonView]:
         """Return what a practice with these settings would give, on the kinematic simulator."""
         if body.continue_from is not None:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
         requester = WhatIfRequester(check=services.stopping.check)
         if role == "spectator":
             requester = spectator(services, charged_client(request.scope))
-        return JSONResponse(services.of(WhatIf).ask(body.start().config, requester))
+        return RecordResponse(services.of(WhatIf).ask(body.start().config, requester))
 
     return router
 
@@ -94,14 +93,14 @@ def estimate_routes(start: StartKind) -> APIRouter:
         tags=[f"{start.kind}s"],
         summary=f"Estimate how long {thing} would take on this server",
         description=description,
-        response_model=EstimateView,
         name=f"estimate_{start.kind}",
     )
     @policy(access=OPERATOR)
-    def estimate_of_kind(services: ServicesDep, body: body_type) -> Response:
+    def estimate_of_kind(services: ServicesDep, body: body_type) -> RecordResponse[EstimateView]:
         start, estimates = body.start(), services.of(Estimates)
         seconds = round(estimates.of(start), 1)
-        return JSONResponse({"seconds": seconds, "workers": estimates.workers_of(start)})
+        estimate = EstimateView(seconds=seconds, workers=estimates.workers_of(start))
+        return RecordResponse(estimate)
 
     return router
 

@@ -4,11 +4,11 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from cachetools import LRUCache
 
+from app.api.answers import ComparisonView, SeedsView
 from app.features.what_if.step_time import TimedSteps, step_s_of, timed_trial
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.submissions import check_training
@@ -76,18 +76,13 @@ class WhatIf:
 
     def ask(
         self, training: TrainingConfig, requester: WhatIfRequester = _OPERATOR
-    ) -> dict[str, Any]:
+    ) -> ComparisonView:
         """Compute distances after this training, and after the same one with default settings.
 
         Args:
             training: the training; its simulator, build tolerance, seed, evaluations and pace are
                 ignored.
             requester: who asks.
-
-        Returns:
-            `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
-            of seeds with at least half of greedy's distance), `iqm_m` (interquartile mean), the
-            agent's `settings` and `steps_per_episode`; `compute_s`.
 
         Raises:
             InvalidInput, UnknownName, Unreachable: if the training is invalid, or takes too long.
@@ -112,13 +107,13 @@ class WhatIf:
         trials = [TrialConfig(training=variant) for variant in (chosen, default)]
         distances, compute_s = self._distances([greedy, *trials], requester)
         greedy_m = distances[greedy][0]
-        return {
-            "seeds": SEEDS,
-            "greedy_m": greedy_m,
-            "chosen": _summarize(chosen, distances[trials[0]], greedy_m),
-            "default": _summarize(default, distances[trials[1]], greedy_m),
-            "compute_s": round(compute_s, 3),
-        }
+        return ComparisonView(
+            seeds=SEEDS,
+            greedy_m=greedy_m,
+            chosen=_summarize(chosen, distances[trials[0]], greedy_m),
+            default=_summarize(default, distances[trials[1]], greedy_m),
+            compute_s=round(compute_s, 3),
+        )
 
     def close(self) -> None:
         """Shut down the pool."""
@@ -229,15 +224,16 @@ def _distance_m(result: TrialResult) -> float:
 
 def _summarize(
     config: TrainingConfig, distances_m: tuple[float, ...], greedy_m: float
-) -> dict[str, Any]:
+) -> SeedsView:
+    """Return the distances of the seeds; those that reach half of greedy's distance walk."""
     walkers = sum(distance >= greedy_m / 2 for distance in distances_m)
-    return {
-        "settings": dict(config.settings),
-        "steps_per_episode": config.steps_per_episode,
-        "distances_m": list(distances_m),
-        "walkers": walkers / len(distances_m),
-        "iqm_m": _interquartile_mean(distances_m),
-    }
+    return SeedsView(
+        settings=dict(config.settings),
+        steps_per_episode=config.steps_per_episode,
+        distances_m=list(distances_m),
+        walkers=walkers / len(distances_m),
+        iqm_m=_interquartile_mean(distances_m),
+    )
 
 
 def _interquartile_mean(values: Sequence[float]) -> float:

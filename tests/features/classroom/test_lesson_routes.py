@@ -157,7 +157,7 @@ def test_a_lesson_that_is_nested_too_deeply_is_refused(api: Api) -> None:
 
 def test_a_link_that_looks_like_a_script_is_text() -> None:
     lesson = read_lesson(card(text="[x](javascript:alert(1)) and [y](JaVaScRiPt:alert(1))"))
-    assert "href" not in html_of(lesson.cards[0])["text"]
+    assert "href" not in html_of(lesson.cards[0]).text
 
 
 def test_a_card_without_a_lesson_is_told(api: Api) -> None:

@@ -15,11 +15,11 @@ from app.features.classroom.access import Participant
 from app.features.classroom.response_models import (
     LessonList,
     LessonView,
-    ResultsView,
-    RoomEvent,
     RoomList,
     RoomView,
 )
+from app.features.classroom.results import ResultsView
+from app.features.classroom.room import RoomEvent
 from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.features.classroom.seats import MAX_PARTICIPANTS

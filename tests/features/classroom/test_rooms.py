@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
 
 import pytest
 from sqlalchemy import Connection, TextClause, text
 
+from app.api.answers import ComparisonView, SeedsView
 from app.features.classroom.lesson import read_lesson
 from app.features.classroom.room_rows import RoomRows, RoomRun, Seat
 from app.features.classroom.rooms import IDLE, MAX_OPEN, Rooms
@@ -25,6 +25,8 @@ LESSON = read_lesson(
         ],
     }
 )
+_SEEDS = SeedsView(settings={}, steps_per_episode=50, distances_m=[0.25], walkers=1.0, iqm_m=0.25)
+COMPARISON = ComparisonView(seeds=1, greedy_m=0.5, chosen=_SEEDS, default=_SEEDS, compute_s=0.0)
 
 
 @pytest.fixture(params=BACKENDS)
@@ -84,7 +86,7 @@ def test_the_newest_of_many_what_ifs_is_the_same_after_a_restart(store: RunStore
     code = rooms.create(read_lesson({"title": "x", "cards": [card]})).code
     rooms.join(code)
     for number in range(12):
-        rooms.ask(code, 0, {"alpha": number / 100}, lambda: {"chosen": {"iqm_m": 0.1}}, card=0)
+        rooms.ask(code, 0, {"alpha": number / 100}, lambda: COMPARISON, card=0)
     assert [what_if.given["alpha"] for what_if in Rooms(store).get(code).runs_of(0, 0)] == [
         what_if.given["alpha"] for what_if in rooms.get(code).runs_of(0, 0)
     ]
@@ -95,24 +97,23 @@ def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
     rooms = Rooms(store)
     code = rooms.create(read_lesson({"title": "x", "cards": [card, {"text": "d"}]})).code
     rooms.join(code)
-    answer = {"chosen": {"iqm_m": 0.25}}
     calls: list[str] = []
 
-    def compute() -> dict[str, Any]:
+    def compute() -> ComparisonView:
         calls.append("once")
         # The teacher goes on meanwhile; what was asked is kept.
         rooms.show_card(code, 1)
-        return answer
+        return COMPARISON
 
-    assert rooms.ask(code, 0, {"alpha": 0.5}, compute, card=0) == answer
+    assert rooms.ask(code, 0, {"alpha": 0.5}, compute, card=0) == COMPARISON
     after = Rooms(store)
     assert after.get(code) == rooms.get(code)
     (stored,) = after.get(code).runs_of(0, 0)
-    assert (stored.answer, stored.given, stored.is_shown) == (answer, {"alpha": 0.5}, False)
+    assert (stored.answer, stored.given, stored.is_shown) == (COMPARISON, {"alpha": 0.5}, False)
     with pytest.raises(Forbidden, match="is at card 1"):
         after.ask(code, 0, {}, compute, card=0)
     after.show_card(code, 0)
-    assert after.ask(code, 0, {"alpha": 0.5}, compute, card=0) == answer
+    assert after.ask(code, 0, {"alpha": 0.5}, compute, card=0) == COMPARISON
     assert len(calls) == 1
     after.reveal(code, 0)
     assert Rooms(store).get(code).runs_of(0, 0)[0].is_shown

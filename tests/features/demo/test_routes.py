@@ -13,6 +13,7 @@ from app.features.demo.access import VISITOR_NAME
 from app.features.demo.response_models import AllowanceView, VisitorList
 from app.features.demo.settings import DemoSettings
 from app.settings import Settings
+from hexapods.domain.records import from_json
 from tests.api.calls import WALK, Api
 from tests.api.conftest import running
 
@@ -54,7 +55,7 @@ def test_a_stranger_trains_and_has_the_rest_of_the_allowance(stranger: Api) -> N
     assert VISITOR_NAME not in str(stranger.client.cookies)
     run = stranger.finished(stranger.start("/trainings", SHORT))
     left = stranger.get("/allowance")
-    AllowanceView.model_validate(left)
+    from_json(AllowanceView, left)
     # A short start counts as the least.
     assert (left["steps_left"], left["runs"], left["unended"]) == (800, [run["id"]], 0)
     race = stranger.start("/races", {**WALK, "steps": 5, "lanes": [{"agent": "greedy"}]})
@@ -215,7 +216,7 @@ def test_a_forged_cookie_is_a_new_visitor(stranger: Api) -> None:
 def test_operators_list_visitors_and_no_one_else_does(stranger: Api) -> None:
     run = stranger.start("/trainings", SHORT)
     listed = stranger.call("GET", "/visitors", headers=OPERATOR).json()
-    VisitorList.model_validate(listed)
+    from_json(VisitorList, listed)
     assert listed["items"][0]["runs"] == [run["id"]]
     assert "operators alone" in refused(stranger.call("GET", "/visitors"), 403)
     cookie = next(iter(stranger.client.cookies.values()))

@@ -6,6 +6,7 @@ import pytest
 
 from app.features.explanations.response_models import ExplanationView, LossView, TableView
 from hexapods.agents.explanation import Term, evaluate
+from hexapods.domain.records import from_json
 from tests.api.calls import Api, refused
 
 STEPS = 100
@@ -30,13 +31,13 @@ def shown_values(table: dict[str, Any]) -> dict[tuple[Any, ...], float]:
 
 def explained(api: Api, run_id: str, **query: int) -> dict[str, Any]:
     answer: dict[str, Any] = api.get(f"/runs/{run_id}/explain", params=query)
-    ExplanationView.model_validate(answer)
+    from_json(ExplanationView, answer)
     return answer
 
 
 def table_at(api: Api, run_id: str, **query: int) -> dict[str, Any]:
     answer: dict[str, Any] = api.get(f"/trainings/{run_id}/table", params=query)
-    TableView.model_validate(answer)
+    from_json(TableView, answer)
     return answer
 
 
@@ -234,7 +235,7 @@ def test_a_learner_that_loses_is_told_why(api: Api, trained: dict[str, Any]) -> 
     lanes = [{"agent": "q-learning", "training_id": trained["id"]}, {"agent": "greedy"}]
     race = api.finished(api.race(lanes=[*lanes, {"agent": "linear-model"}]))
     loss = api.get(f"/races/{race['id']}/loss", params={"lane": 0})
-    LossView.model_validate(loss)
+    from_json(LossView, loss)
     total_m = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
 
     assert (loss["steps"], loss["practised_steps"], loss["entries"]) == (50, STEPS, 1500)

@@ -56,7 +56,7 @@ def until(is_so: Callable[[], bool], shown: Callable[[], object]) -> None:
 def all_judged(tournament: Tournament) -> None:
     until(
         lambda: len(tournament.standings) == len(tournament.entries),
-        lambda: tournament.progress["judged"],
+        lambda: tournament.progress.judged,
     )
 
 
@@ -149,12 +149,12 @@ def test_the_judge_stops_at_once_and_goes_on_later(store: RunStore) -> None:
     for seed in range(3):
         tournaments.enter(tournament.id, Entrant(seed), EntryConfig(agent="q-learning"))
     with judging(tournaments) as first:
-        until(lambda: tournament.progress["judged"] > 4, lambda: tournament.progress)
+        until(lambda: tournament.progress.judged > 4, lambda: tournament.progress)
         pids = first.pids
     assert not [pid for pid in pids if psutil.pid_exists(pid)]
     restarted = Tournaments(store)
     again = restarted.get(tournament.id)
-    before = again.progress["judged"]
+    before = again.progress.judged
     assert before > 4
     with judging(restarted):
         all_judged(again)

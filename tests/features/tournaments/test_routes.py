@@ -15,10 +15,10 @@ from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.features.tournaments.response_models import (
     EntryView,
-    TournamentEvent,
     TournamentList,
     TournamentView,
 )
+from app.features.tournaments.tournament import TournamentEvent
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store

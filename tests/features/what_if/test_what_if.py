@@ -65,25 +65,25 @@ def distances(training: TrainingConfig) -> list[float]:
 def test_thirty_kinematic_seeds_run_of_each_variant(what_if: WhatIf) -> None:
     chosen = changed({"alpha": 0.9, "epsilon_end": 0.2})
     answer = what_if.ask(chosen)
-    assert answer["seeds"] == 30
-    assert answer["greedy_m"] == pytest.approx(24.833 * 0.02, abs=1e-5)
-    assert answer["chosen"]["distances_m"] == distances(chosen)
-    assert answer["default"]["distances_m"] == distances(SHORT)
-    assert (answer["chosen"]["settings"]["alpha"], answer["default"]["settings"]["alpha"]) == (
+    assert answer.seeds == 30
+    assert answer.greedy_m == pytest.approx(24.833 * 0.02, abs=1e-5)
+    assert answer.chosen.distances_m == distances(chosen)
+    assert answer.default.distances_m == distances(SHORT)
+    assert (answer.chosen.settings["alpha"], answer.default.settings["alpha"]) == (
         0.9,
         0.3,
     )
-    for half in (answer["chosen"], answer["default"]):
-        far = [metres for metres in half["distances_m"] if metres >= answer["greedy_m"] / 2]
-        assert half["walkers"] == len(far) / 30
+    for half in (answer.chosen, answer.default):
+        far = [metres for metres in half.distances_m if metres >= answer.greedy_m / 2]
+        assert half.walkers == len(far) / 30
 
 
 @pytest.mark.promises
 def test_variants_differ_in_settings_only(what_if: WhatIf) -> None:
     answer = what_if.ask(replace(SHORT, observation="commanded"))
     commanded = replace(SHORT, observation="commanded")
-    assert answer["default"]["distances_m"] == distances(commanded)
-    assert answer["chosen"] == answer["default"]
+    assert answer.default.distances_m == distances(commanded)
+    assert answer.chosen == answer.default
 
 
 @pytest.mark.promises
@@ -91,19 +91,18 @@ def test_all_walk_in_the_world_as_it_is_in_the_end(what_if: WhatIf) -> None:
     noise = SensorNoise(sd_m=0.02)
     later = replace(SHORT, world=World((replace(noise, at_step=30),)))
     assert (
-        what_if.ask(later)["greedy_m"]
-        == what_if.ask(replace(SHORT, world=World((noise,))))["greedy_m"]
+        what_if.ask(later).greedy_m == what_if.ask(replace(SHORT, world=World((noise,)))).greedy_m
     )
-    assert what_if.ask(later)["chosen"]["distances_m"] == distances(later)
+    assert what_if.ask(later).chosen.distances_m == distances(later)
 
 
 @pytest.mark.parametrize("agent", [name for name in BUILT_IN if learns(name)])
 def test_any_learner_can_be_asked_about(agent: str, what_if: WhatIf) -> None:
     training = training_config(gait="left-right-origin", agent=agent, steps=3, tolerance=0.03)
     answer = what_if.ask(training)
-    assert len(answer["chosen"]["distances_m"]) == 30
-    assert answer["chosen"] == answer["default"]
-    assert training.settings.keys() == answer["chosen"]["settings"].keys()
+    assert len(answer.chosen.distances_m) == 30
+    assert answer.chosen == answer.default
+    assert training.settings.keys() == answer.chosen.settings.keys()
 
 
 def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: ProcessPool) -> None:
@@ -111,8 +110,7 @@ def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: ProcessPool) -> 
     pids = pool.pids
     # Neither seed, pace nor simulator counts.
     again = what_if.ask(replace(SHORT, seed=7, pace=3.0, evaluate_every=0, simulator="kinematic"))
-    for name in ("greedy_m", "chosen", "default"):
-        assert again[name] == first[name]
+    assert replace(again, compute_s=first.compute_s) == first
     assert pool.pids == pids
     lower = min(psutil.Process().nice() + NICENESS, 19)
     assert all(psutil.Process(pid).nice() == lower for pid in pids)
@@ -141,7 +139,7 @@ def test_invalid_training_is_refused_with_the_reason(
 ) -> None:
     with pytest.raises(InvalidInput, match=words):
         what_if.ask(replace(SHORT, **more))
-    assert what_if.ask(SHORT)["seeds"] == 30
+    assert what_if.ask(SHORT).seeds == 30
 
 
 def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: ProcessPool) -> None:
@@ -156,7 +154,7 @@ def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: ProcessPool
     for pid in pids:
         os.kill(pid, signal.SIGKILL)
     wait_until(lambda: not any(map(psutil.pid_exists, pids)))
-    assert what_if.ask(changed({"alpha": 0.32}))["chosen"]["settings"]["alpha"] == 0.32
+    assert what_if.ask(changed({"alpha": 0.32})).chosen.settings["alpha"] == 0.32
 
 
 # A world is planned anew after each step, with a discount that hardly converges.
@@ -180,8 +178,8 @@ def test_only_computing_is_charged(what_if: WhatIf) -> None:
     charged: list[float] = []
     spectator = WhatIfRequester(is_operator=False, charge=charged.append)
     first = what_if.ask(changed({"alpha": 0.43}), spectator)
-    assert 0 < charged[0] <= first["compute_s"]
-    assert what_if.ask(changed({"alpha": 0.43}), spectator)["compute_s"] == 0.0
+    assert 0 < charged[0] <= first.compute_s
+    assert what_if.ask(changed({"alpha": 0.43}), spectator).compute_s == 0.0
     assert len(charged) == 1
 
 
@@ -195,7 +193,7 @@ def test_waiting_for_a_core_is_neither_charged_nor_refused(
     charged: list[float] = []
     slow = WhatIfRequester(is_operator=False, check=lambda: time.sleep(2), charge=charged.append)
     answer = what_if.ask(changed({"alpha": 0.435}), slow)
-    assert charged[0] < limit_s < answer["compute_s"]
+    assert charged[0] < limit_s < answer.compute_s
 
 
 def test_nothing_is_computed_for_who_has_left(what_if: WhatIf, pool: ProcessPool) -> None:

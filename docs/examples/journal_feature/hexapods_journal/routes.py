@@ -1,16 +1,17 @@
 """Routes of the journal."""
 
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Annotated
 
 from pydantic import Field
 from sqlalchemy import Connection, func, insert, select
-from starlette.responses import JSONResponse, Response
 
-from app.api.answers import Answer, Count
+from app.answer import Answer, Count
 from app.api.deps import ServicesDep
 from app.api.fields import Body
 from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.record_response import RecordResponse
 from app.storage.database.stored_rows import read_rows
 from hexapods_journal.tables import ENTRIES
 
@@ -40,27 +41,27 @@ class EntryBody(Body):
 router = api_router(prefix="/journal", tags=["journal"])
 
 
-@router.get("", summary="Read the journal", response_model=JournalView)
+@router.get("", summary="Read the journal")
 @policy(access=WATCH)
-def read_journal(services: ServicesDep) -> Response:
+def read_journal(services: ServicesDep) -> RecordResponse[JournalView]:
     """Return all entries; a damaged one is left out, and logged."""
     rows = read_rows(services.store.database, ENTRIES, EntryView, ENTRIES.c.number.desc()).sound
-    return JSONResponse({"items": [row.model_dump(mode="json") for row in rows]})
+    return RecordResponse(JournalView(items=rows))
 
 
-@router.post("", status_code=201, summary="Write into the journal", response_model=EntryView)
+@router.post("", status_code=201, summary="Write into the journal")
 @policy(access=OPERATOR)
-def write_entry(services: ServicesDep, body: EntryBody) -> Response:
+def write_entry(services: ServicesDep, body: EntryBody) -> RecordResponse[EntryView]:
     """Add an entry, which is durable once this is answered."""
 
     def work(connection: Connection) -> EntryView:
         last = connection.execute(select(func.max(ENTRIES.c.number))).scalar()
-        row = {
-            "number": 1 if last is None else int(last) + 1,
-            "text": body.text,
-            "written_at": datetime.now(UTC),
-        }
-        connection.execute(insert(ENTRIES).values(row))
-        return EntryView(**row)
+        entry = EntryView(
+            number=1 if last is None else int(last) + 1,
+            text=body.text,
+            written_at=datetime.now(UTC),
+        )
+        connection.execute(insert(ENTRIES).values(asdict(entry)))
+        return entry
 
-    return JSONResponse(services.store.database.write(work).model_dump(mode="json"), 201)
+    return RecordResponse(services.store.database.write(work), 201)
