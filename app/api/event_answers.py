@@ -2,31 +2,16 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field
-from datetime import datetime
 from functools import cache
 from typing import Any, ClassVar, Literal
 
 from app.answer import Answer, Count, extended
-from app.api.answers import Settings, StageView
+from app.api.answers import StageView
 from app.api.recorded_answers import Evaluation
-from app.api.run_views import AnyRunView, KindName
+from app.api.run_views import ListedRunView
+from app.events.run_view import NewPace, NewSettings
 from app.feature import Feature
-from app.storage.run import State
 from hexapods.runs.clocks import Clock
-
-
-class DamagedRunView(Answer):
-    """A run that cannot be read, and why. It can be deleted."""
-
-    id: str
-    kind: KindName | None
-    name: str | None
-    state: State | None
-    created_at: datetime | None
-    damaged: str
-
-
-ListedRunView = AnyRunView | DamagedRunView
 
 
 class SceneLane(Answer):
@@ -169,8 +154,8 @@ class RatesEvent(Answer):
 
     run_id: str
     step: Count
-    pace: float | Literal["max"] | None = None
-    settings: Settings = field(default_factory=dict)
+    pace: NewPace = None
+    settings: NewSettings = field(default_factory=dict)
 
 
 class ViewersEvent(Answer):

@@ -23,6 +23,7 @@ from app.limits.client_slots import NoFreeSlot, Refusal
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
 from app.viewer.shared_stage import SharedStage
+from hexapods.domain.records import to_json
 from hexapods.version import __version__
 
 NEWEST_RUNS = 50
@@ -154,7 +155,7 @@ def _snapshot(
         "role": role if identity is None else identity.page_role,
         "viewers": shared.hub.counters.viewers,
         "robots_version": store.robots.version,
-        "runs": [services.jobs.view(run) for run in runs],
+        "runs": [to_json(services.jobs.view(run)) for run in runs],
         "stage": shared.stage.state(),
         "scene": shared.stage.scene(),
     }

@@ -3,7 +3,7 @@
 from pydantic import BaseModel, ConfigDict
 
 from app.answer import Answer, Count
-from app.api.answers import Settings
+from app.events.run_view import Settings
 from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.robot import AnyRobot

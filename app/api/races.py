@@ -10,7 +10,7 @@ from starlette.datastructures import QueryParams
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Scope
 
-from app.api.answers import RacePage, RaceView
+from app.api.answers import RacePage
 from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
@@ -19,6 +19,7 @@ from app.api.policy import WATCH_RUN, policy
 from app.api.recorded_answers import RecordingView, TimelineView
 from app.api.runs import RunPath, find, run_routes
 from app.api.work import ANALYSIS, DOWNLOAD, ENCODING, Work
+from app.events.run_view import RaceView
 from app.stage.playback import original_of
 from app.stage.timeline import timeline
 from app.storage.artifact_file import ArtifactFile

@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.answers import (
     DeletedView,
     KeptRun,
     Page,
-    RunView,
 )
 from app.api.contract import LOCATION, answers
 from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep, StartRequest, StartRequestDep
@@ -22,8 +21,9 @@ from app.api.fields import RunId
 from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.recorded_answers import CurvesView, ThinnedCurve
-from app.api.run_views import AnyRunView, KindName, RunPage
+from app.api.run_views import AnyRunView, KindName, ListedRunView, RunPage
 from app.api.schemas import AnnotationBody
+from app.events.run_view import DamagedRunView, RunView
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
 from app.storage.database.listing import Listing
@@ -103,21 +103,21 @@ def start_run(
 def located(services: Services, request: Request, run: Run, status: int) -> Response:
     """Return the response with a new run, and its Location."""
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path
-    return JSONResponse(services.jobs.view(run), status, {"Location": location})
+    return RecordResponse(services.jobs.view(run), status, {"Location": location})
 
 
 router = api_router(prefix="/runs", tags=["runs"])
 
 
-@router.get("", summary="List runs of every kind", response_model=RunPage)
+@router.get("", summary="List runs of every kind")
 @policy(access=WATCH)
 def list_runs(
     services: ServicesDep,
     listing: ListingDep,
     kind: Annotated[KindName | None, Query(description=VALID["kind"])] = None,
-) -> Response:
+) -> RecordResponse[RunPage]:
     """List runs, filtered by kind, state, tag, and a part of the name, id, tags or notes."""
-    return _page(services, listing._replace(kind=kind))
+    return _page(RunPage, services, listing._replace(kind=kind))
 
 
 @router.delete("", summary="Delete runs that have ended")
@@ -163,26 +163,20 @@ def get_curves(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[Curves
     return RecordResponse(CurvesView(curves=curves))
 
 
-@router.get(
-    "/{run_id}",
-    summary="Get a run of any kind",
-    response_model=AnyRunView,
-)
+@router.get("/{run_id}", summary="Get a run of any kind")
 @policy(access=WATCH_RUN, depends_on_state=False)
-def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
+def get_any_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[ListedRunView]:
     """Return a run whose kind is not known."""
-    return JSONResponse(services.jobs.view(services.store.find(run_id)))
+    return RecordResponse(services.jobs.view(services.store.find(run_id)))
 
 
-@router.patch(
-    "/{run_id}",
-    summary="Rename a run, or change its tags or notes",
-    response_model=AnyRunView,
-)
+@router.patch("/{run_id}", summary="Rename a run, or change its tags or notes")
 @policy(access=OWN_RUNS)
-def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -> Response:
+def annotate_run(
+    services: ServicesDep, run_id: RunPath, body: AnnotationBody
+) -> RecordResponse[AnyRunView]:
     """Change them in any state of the run; tags and notes are replaced as a whole."""
-    return JSONResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
+    return RecordResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
 
 
 @router.post(
@@ -203,10 +197,10 @@ def run_again(
     return start_run(services, request, start_request, CopyStart(run_id))
 
 
-def _page(services: Services, listing: Listing) -> Response:
+def _page(model: Callable[..., Page], services: Services, listing: Listing) -> RecordResponse[Any]:
     page = services.store.list(**listing._asdict())
     items = [services.jobs.view(run) for run in page.items]
-    return JSONResponse({"items": items, "next_cursor": page.next_cursor})
+    return RecordResponse(model(items=items, next_cursor=page.next_cursor))
 
 
 def run_routes(
@@ -225,14 +219,17 @@ def run_routes(
     @router.get("", summary=f"List {kind}s", name=f"list_{kind}s", response_model=page)
     @policy(access=WATCH)
     def list_runs(services: ServicesDep, listing: ListingDep) -> Response:
-        return _page(services, listing._replace(kind=kind))
+        return _page(page, services, listing._replace(kind=kind))
 
     @router.get(
-        "/{run_id}", summary=phrase("Get {}", kind), name=f"get_{kind}", response_model=view
+        "/{run_id}",
+        summary=phrase("Get {}", kind),
+        name=f"get_{kind}",
+        response_model=view | DamagedRunView,
     )
     @policy(access=WATCH_RUN, depends_on_state=False)
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:
-        return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
+        return RecordResponse(services.jobs.view(find_any(services, kind, run_id)))
 
     @router.delete(
         "/{run_id}",
@@ -277,6 +274,6 @@ def _command(kind: Kind, verb: str) -> Callable[..., Any]:
 
     def command(services: ServicesDep, run_id: RunPath) -> Response:
         find(services, kind, run_id)
-        return JSONResponse(services.jobs.view(act(services.jobs, run_id)), 202)
+        return RecordResponse(services.jobs.view(act(services.jobs, run_id)), 202)
 
     return command

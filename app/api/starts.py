@@ -4,14 +4,15 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from fastapi import APIRouter, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.agent_bodies import agent_bodies
-from app.api.answers import RaceView, RunView, TrainingView
 from app.api.contract import LOCATION, answers
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.policy import OPERATOR, START, Access, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.runs import RunPath, find, start_run
+from app.events.run_view import RaceView, RunView, TrainingView
 from app.storage.run import Kind
 
 
@@ -84,7 +85,7 @@ def start_routes(agents: tuple[str, ...], kinds: Iterable[StartKind]) -> APIRout
     def change_training(services: ServicesDep, run_id: RunPath, body: change_body) -> Response:
         """Apply the change between two steps, and record it with the step's number in `changes`."""
         find(services, "training", run_id)
-        return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
+        return RecordResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
 
     return router
 

@@ -8,19 +8,20 @@ from pydantic import BeforeValidator
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api import curves
-from app.api.answers import TrainingPage, TrainingView
+from app.api.answers import TrainingPage
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
-from app.api.recorded_answers import CurveView, QTableView
+from app.api.record_response import RecordResponse
+from app.api.recorded_answers import CurveView, Evaluation, QTableView
 from app.api.runs import RunPath, find, located, run_routes
 from app.api.work import ANALYSIS
+from app.events.run_view import TrainingView
 from app.jobs import table_import
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
-from app.storage.json_text import finite
 from app.storage.run import IdempotencyKey, Run, world_of
 from app.storage.stored_tables import open_table, read_rows
 from hexapods.domain.disturbance_documents import AnyDisturbance, as_mapping
@@ -92,7 +93,6 @@ def disturb_training(
 @router.get(
     "/{run_id}/curve",
     summary="Get the learning curve (JSON, CSV)",
-    response_model=CurveView,
     responses=answers(200, {"text/csv": TEXT}),
 )
 @policy(access=WATCH_RUN, work=ANALYSIS)
@@ -101,18 +101,18 @@ def get_curve(
     request: Request,
     run_id: RunPath,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
-) -> Response:
+) -> RecordResponse[CurveView] | Response:
     """Return the evaluations so far, with greedy's and the best known distance to compare."""
     run = find(services, "training", run_id)
     rows = services.store.curves.get(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
-    shown = {
-        "evaluations": rows,
-        "greedy_distance_m": run.greedy_distance_m,
-        "best_known_m": _best_known_m(run),
-    }
-    return JSONResponse(finite(shown))
+    curve = CurveView(
+        evaluations=[Evaluation(**row) for row in rows],
+        greedy_distance_m=run.greedy_distance_m,
+        best_known_m=_best_known_m(run),
+    )
+    return RecordResponse(curve)
 
 
 def _best_known_m(run: Run) -> float | None:

@@ -13,7 +13,7 @@ from collections.abc import AsyncIterator, Callable, Container, Mapping
 from typing import Any, NamedTuple
 
 from app.answer import Answer
-from app.events.run_view import run_view
+from app.events.run_view import view_of
 from app.storage.json_text import json_text
 from app.storage.run import AnyRun
 from hexapods.domain.records import to_json_bytes
@@ -159,8 +159,8 @@ class EventBus:
         return self._last_id
 
     def publish_run(self, run: AnyRun, queue_position: int | None = None) -> None:
-        """Send a `run` event for a run that has changed; arguments as of `run_view`."""
-        self._send("run", run_view(run, queue_position), run.id, run=run)
+        """Send a `run` event for a run that has changed; arguments as of `view_of`."""
+        self._send("run", view_of(run, queue_position), run.id, run=run)
 
     def publish(
         self,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.events.bus import EventBus
-from app.events.run_view import run_view
+from app.events.run_view import DamagedRunView, RunView, view_of
 from app.jobs.job import Job
 from app.jobs.messages import Changed
 from app.jobs.queue import Owner, RunQueue
@@ -123,9 +123,9 @@ class Jobs:
         """Shut down: end every process with a checkpoint; unfinished runs become `interrupted`."""
         self._supervisor.close()
 
-    def view(self, run: AnyRun) -> dict[str, Any]:
-        """Return the REST resource of a run, with its position in the queue."""
-        return run_view(run, self._queue.position(run.id))
+    def view(self, run: AnyRun) -> RunView | DamagedRunView:
+        """Return a run as the API tells it, with its position in the queue."""
+        return view_of(run, self._queue.position(run.id))
 
     def start(self, start: Start, key: IdempotencyKey | None = None) -> Run:
         """Queue a run, preceded by the trainings that are part of the request.

@@ -76,10 +76,10 @@ class AddedKind(RunKind, ABC):
 
     @abstractmethod
     def response_model(self) -> type[Any]:
-        """Return the model of a run in answers, a subclass of `app.api.answers.RunView`."""
+        """Return the model of a run in answers, a subclass of `app.events.run_view.RunView`."""
 
     def view(self, run: "Run") -> Mapping[str, Any]:
-        """Return further members of a run as JSON, in plain types."""
+        """Return further members of the response model of a run, by name."""
         del run
         return {}
 

@@ -2124,7 +2124,7 @@ export interface ExperimentPage {
    * Cursor of the next page; null on the last page.
    */
   next_cursor: string | null;
-  items: ExperimentView[];
+  items: (ExperimentView | DamagedRunView)[];
 }
 /**
  * An explained step.
@@ -3572,7 +3572,7 @@ export interface RacePage {
    * Cursor of the next page; null on the last page.
    */
   next_cursor: string | null;
-  items: RaceView[];
+  items: (RaceView | DamagedRunView)[];
 }
 /**
  * Standing of an entry that has been judged on all draws.
@@ -3819,7 +3819,7 @@ export interface RunPage {
    * Cursor of the next page; null on the last page.
    */
   next_cursor: string | null;
-  items: (TrainingView | RaceView | ExperimentView)[];
+  items: ((TrainingView | RaceView | ExperimentView) | DamagedRunView)[];
 }
 /**
  * Results of a setting over its seeds.
@@ -4506,7 +4506,7 @@ export interface TrainingPage {
    * Cursor of the next page; null on the last page.
    */
   next_cursor: string | null;
-  items: TrainingView[];
+  items: (TrainingView | DamagedRunView)[];
 }
 /**
  * Result of a trial; `distances_m` after each block.

@@ -13,11 +13,7 @@ from fastapi.routing import iter_route_contexts
 from fastapi.sse import ServerSentEvent
 from pydantic import TypeAdapter
 
-from app.api.answers import (
-    RaceView,
-    TrainingPage,
-    TrainingView,
-)
+from app.api.answers import TrainingPage
 from app.api.contract import operations, problems_of
 from app.api.deps import EventListener, Services
 from app.api.event_answers import event_bodies, stage_view
@@ -27,6 +23,7 @@ from app.api.policy import OPERATOR, PUBLIC, WATCH_RUN, MissingPolicy, RoutePoli
 from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.run_views import RunPage
+from app.events.run_view import RaceView, TrainingView
 from app.installed_features import load
 from app.server import create_app
 from app.settings import Settings

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.api.answers import RaceView, TrainingView
 from app.api.event_answers import SceneLane, SceneView
+from app.events.run_view import RaceView, TrainingView
 from tests.page.moments import FILE
 
 

@@ -25,6 +25,7 @@ from app.storage.run import QUEUED, TABLE, Run
 from app.storage.stored_tables import load_table
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import to_json
 from hexapods.runs.baseline import baseline_id
 from hexapods.runs.config import WalkingProblem, training_config
 from hexapods.runs.training import walk
@@ -75,9 +76,9 @@ def test_queue_is_bounded(jobs: Jobs, store: RunStore) -> None:
         jobs.start(RaceStart(WALK, lanes, 50, 0))
     queued = store.list(state="queued").items
     assert len(queued) == MAX_QUEUED
-    places = [jobs.view(run)["queue_position"] for run in reversed(queued)]
+    places = [to_json(jobs.view(run))["queue_position"] for run in reversed(queued)]
     assert places == list(range(1, MAX_QUEUED + 1))
-    assert jobs.view(store.get(first.id))["queue_position"] is None
+    assert to_json(jobs.view(store.get(first.id)))["queue_position"] is None
     for run in queued:
         assert jobs.stop(run.id).state == "stopped"
     jobs.stop(first.id)

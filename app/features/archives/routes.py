@@ -3,13 +3,14 @@
 from collections.abc import Callable, Sequence
 
 from fastapi import APIRouter, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.answer import Answer
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, WATCH_RUN, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.run_views import AnyRunView
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
 from app.api.work import DOWNLOAD
@@ -78,14 +79,15 @@ def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     status_code=201,
     tags=["runs"],
     summary="Import an archive of runs",
-    response_model=ImportedView,
     openapi_extra=takes_file("application/octet-stream"),
 )
 @policy(access=OPERATOR, starts=True, takes_file=True)
-def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep) -> Response:
+def import_archive_of_runs(
+    services: ServicesDep, start_request: StartRequestDep
+) -> RecordResponse[ImportedView]:
     """Import the body, an archive, whole or not at all; otherwise as `POST /import`."""
     runs = _imported(services, start_request, is_one=False)
-    return JSONResponse({"items": [services.jobs.view(run) for run in runs]}, 201)
+    return RecordResponse(ImportedView(items=[services.jobs.view(run) for run in runs]), 201)
 
 
 @router.post(

@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.answer import Answer, Count
-from app.api.answers import Page, RunView
+from app.api.answers import Page
 from app.api.option_answers import Described
+from app.events.run_view import DamagedRunView, RunView
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
 from hexapods.experiments.config import ExperimentConfig
@@ -31,7 +32,7 @@ class ExperimentView(RunView):
 class ExperimentPage(Page):
     """Page of experiments."""
 
-    items: list[ExperimentView]
+    items: list[ExperimentView | DamagedRunView]
 
 
 class ExperimentOption(Described):

@@ -6,13 +6,13 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import RaceView, TrainingView
 from app.api.contract import ATTACHMENT, LOCATION, TEXT, answers
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment, file_response, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.runs import RunPath, find, run_routes, start_run
 from app.api.work import ANALYSIS, DOWNLOAD
+from app.events.run_view import RaceView, TrainingView
 from app.features.experiments.request_bodies import TrialBody
 from app.features.experiments.response_models import (
     ExperimentPage,

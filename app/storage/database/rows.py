@@ -27,6 +27,7 @@ from hexapods.runs.race_config import RaceConfig
 _MAX_TEXT = 10_000
 _MAX_CACHED_CONFIG_CHARS = 10_000
 """Longer configs are parsed anew each time instead of being cached."""
+_CHANGES = ("step", "pace", "settings", "disturbance")
 _LISTS = ("lane_training_ids", "waiting_for", "changes")
 _TIMES = ("created_at", "started_at", "ended_at")
 
@@ -115,6 +116,8 @@ def _decode(row: Mapping[str, Any]) -> Run:
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")
     run = from_json(Run, values)
+    if any(change.keys() - _CHANGES or "step" not in change for change in run.changes):
+        raise ValueError(f"its changes are none of {', '.join(_CHANGES)}, with a step")
     for name in ("eta_s", "greedy_distance_m", "changes"):
         # Of the run, as `NaN` in a column of text is read as a number.
         if not is_finite(getattr(run, name)):
