@@ -20,7 +20,7 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.settings import SettingValues, Value
 from hexapods.domain.world import parse_world
 from hexapods.experiments.config import MAX_TRIALS, ExperimentConfig
-from hexapods.experiments.presets import GRID
+from hexapods.experiments.presets import EARNING_STEPS, GRID
 from hexapods.experiments.trial import TrialConfig
 from hexapods.runs.config import (
     TrainingConfig,
@@ -41,8 +41,6 @@ LEAGUE_STEPS = (25, 50, 100, 150, 250, 500, 1000, 1500, 2000, 3000, 5000, 10_000
 """Steps after which learners are evaluated along their practice; and at its end."""
 RECOVERY_STEPS = (0, 1, 25, 50, 100, 150)
 """Steps after something happened at which learners are evaluated that recover from it."""
-EARNING_STEPS = 50
-"""Number of steps after each of these whose rewards are added up."""
 
 
 @dataclass(frozen=True, kw_only=True)

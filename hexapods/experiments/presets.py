@@ -14,6 +14,8 @@ and once more in one go; `practice`: along it; `recovery`: after something happe
 
 REACHED_SHARE = 0.95
 """Share of a reference's distance from which a walk counts as equally far."""
+EARNING_STEPS = 50
+"""Number of steps after each evaluation of a recovery whose rewards are added up."""
 FIGURE4_BLOCKS = 8
 GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
 """Axes of a training beside agent, gait, observation, robot, world and the agents' settings."""
@@ -78,6 +80,11 @@ class Preset:
     def has_own_gaits(self) -> bool:
         """Whether each robot walks in the gait that suits it."""
         return self.defaults.get("gaits") == ()
+
+    @property
+    def earning_steps(self) -> int | None:
+        """Number of steps after each evaluation whose rewards are added up; None where none are."""
+        return EARNING_STEPS if self.measure == "recovery" else None
 
     @property
     def is_for_learners(self) -> bool:

@@ -7,13 +7,14 @@ import {
   chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
-import { changeIfStillHere, page } from "./page-state.js";
+import { changeIfStillHere, linkTo, page, showAddress } from "./page-state.js";
+import { copy, toast } from "./page.js";
 import {
   canPlay, isPlaying, isRaceRun, isStale, laneTables, matchingTable, myWork, shownRun, work,
 } from "./on-stage.js";
 import { isActive, isOperator, markAsMine, mayStart } from "./selectors.js";
 import {
-  closeReplay, openReplay, plan, playReplay, replayTime, seekReplay, setReplayClock, setReplaySpeed,
+  closeReplay, openReplay, plan, playReplay, replayLink, replayTime, seekReplay, setReplayClock, setReplaySpeed,
 } from "./replay.js";
 import { beginOfStep } from "./replay-frames.js";
 import { features, kindOf } from "./features.js";
@@ -371,3 +372,14 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
 
 /** @param {Run} run */
 export const isShown = (run) => shownRun.value?.id === run.id;
+
+/** Copy a link to what the page shows; where there is no clipboard, show it in the address bar. */
+export async function share() {
+  const isOwn = page.run.value !== null;
+  const address = isOwn ? replayLink() : linkTo();
+  const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting that was changed.";
+  if (!(await copy(address, `Link copied. ${contents}`))) {
+    showAddress(address);
+    toast("The address bar has the link: copy it from there.");
+  }
+}

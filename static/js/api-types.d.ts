@@ -2115,6 +2115,16 @@ export interface ExperimentOption {
    * whether its agents' settings may have several values.
    */
   takes_settings: boolean;
+  /**
+   * steps after each evaluation whose rewards are added up; null where none are.
+   */
+  earning_steps: number | null;
+  /**
+   * the paper's names of the gaits, where the paper prints its numbers.
+   */
+  paper_gaits: {
+    [k: string]: string;
+  };
 }
 /**
  * Page of experiments.

@@ -35,6 +35,9 @@ import { signal } from "@preact/signals";
  * @property {number} [width] [px]
  */
 
+/** How much charts offer; as the depth of the workspace, where there is one. @type {Signal<string>} */
+export const chartDepth = signal("study");
+
 // ---- the crosshair and the zoom, which all charts over the same axis share
 
 /**

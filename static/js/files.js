@@ -1,11 +1,9 @@
-// Files that the browser downloads: the addresses of a run's, and those that the page makes.
+// Files of a run that the browser downloads from the server.
 import { addressOf, pathOf } from "./api.js";
 import { kindOf } from "./features.js";
 
 /** @import { RunKey } from "./api.js" */
 /** @import { Run } from "./types.js" */
-
-// ---- files of the server
 
 /** @type {(run: RunKey, rest: string) => string} */
 export const partOf = (run, rest) => addressOf(`${pathOf(run)}/${rest}`);
@@ -32,17 +30,4 @@ function learned(run) {
   const npz = partOf(run, "q-table?format=npz");
   if (!run.result.q_table_sha256) return [["Learned state (npz)", npz]];
   return [["Q-table (CSV)", partOf(run, "q-table?format=csv")], ["Q-table (npz)", npz]];
-}
-
-// ---- files of the page
-
-const KEPT_MS = 60_000;
-
-/** @type {(content: Blob, name: string) => void} */
-export function saveFile(content, name) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), KEPT_MS);
 }

@@ -101,6 +101,10 @@ export function whole(value) {
   return Math.abs(value) < SMALLEST_GROUPED ? digits : digits.replace(/\B(?=(\d{3})+$)/g, THIN_SPACE);
 }
 
+/** A text in which numbers as "2,000" are grouped as all others are. @param {string} text */
+export const withGroupedDigits = (text) =>
+  text.replace(/(?<![\d.,])\d{1,3}(,\d{3})+(?![\d,])/g, (digits) => whole(Number(digits.replaceAll(",", ""))));
+
 /**
  * A share from 0 to 1: "42 %".
  * @param {number} share

@@ -18,6 +18,7 @@ import {
   applyEvent, connection, eventNames, followOptions, isLockedOut, isLockOut, openEvents, role, version,
 } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
+import { followChartDepth } from "./workspace.js";
 
 /** Open the forms; the options are there. */
 function openForms() {
@@ -56,6 +57,7 @@ followHistory();
 followFields();
 features.value.forEach(({ follow }) => follow?.());
 followTheme();
+followChartDepth();
 followRole();
 reloadAfterUpgrade();
 followRuns(stageIds);

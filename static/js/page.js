@@ -1,8 +1,6 @@
 // What concerns this page alone and is in no link: dialogs, large type, the window's size, what the browser keeps;
 // and texts and links that are copied, which is told for a few seconds.
 import { computed, effect, signal } from "@preact/signals";
-import { linkTo, page, showAddress } from "./page-state.js";
-import { replayLink } from "./replay.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "./replay-frames.js" */
@@ -115,14 +113,4 @@ export async function copy(text, words) {
   }
   toast(words);
   return true;
-}
-
-export async function share() {
-  const isOwn = page.run.value !== null;
-  const address = isOwn ? replayLink() : linkTo();
-  const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting that was changed.";
-  if (!(await copy(address, `Link copied. ${contents}`))) {
-    showAddress(address);
-    toast("The address bar has the link: copy it from there.");
-  }
 }

@@ -1,7 +1,7 @@
 // Settings as the server declares them: their controls, names and limits, and those of each agent.
 import { computed, signal } from "@preact/signals";
 import { sentence, whole } from "./format.js";
-import { options, served } from "./store.js";
+import { options, served } from "./options.js";
 
 /** @import { Agent, Bounds, FieldOption, Limits, SettingOption, SettingValue } from "./types.js" */
 

@@ -2,9 +2,12 @@
 // overtaken.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { addressOf, getOptions, RequestError } from "./api.js";
+import { options } from "./options.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { DamagedRun, Evaluation, EventBodies, Options, Rates, Run, Scene, Stage } from "./types.js" */
+/** @import { DamagedRun, Evaluation, EventBodies, Rates, Run, Scene, Stage } from "./types.js" */
+
+export { options, served } from "./options.js";
 
 /** @type {Signal<"connecting" | "live" | "reconnecting">} */
 export const connection = signal("connecting");
@@ -18,10 +21,6 @@ export const isLockedOut = signal(false);
 export const role = signal(null);
 /** Number of pages that watch the stage. @type {Signal<number | null>} */
 export const viewers = signal(null);
-/** Null until the server has answered. @type {Signal<Options | null>} */
-export const options = signal(null);
-/** The options, for code that runs only once they are known: components, and what they call. */
-export const served = () => /** @type {Options} */ (options.value);
 /** Of the stored robots, which the options have. */
 export const robotsVersion = signal(0);
 /** Every known run by id. @type {Signal<Map<string, Run>>} */

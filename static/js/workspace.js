@@ -1,5 +1,6 @@
 // The workspace around the stage: its depths and tabs, and the panel. What a depth leaves out is hidden, not undone.
-import { computed } from "@preact/signals";
+import { computed, effect } from "@preact/signals";
+import { chartDepth } from "./chart.js";
 import { features, partsOf } from "./features.js";
 import { phase } from "./on-stage.js";
 import { change, DEPTHS, page } from "./page-state.js";
@@ -54,6 +55,11 @@ export const depth = computed(() => {
   const needed = [page.tab.value, page.pinned.value].map(existing)
     .map((name) => (name === null ? DEPTHS[0] : neededFor(name)));
   return [chosenDepth.value, ...needed].reduce((most, name) => (rankOf(name) > rankOf(most) ? name : most));
+});
+
+/** Keep charts at the depth of the workspace; outside the view of the race they offer all. */
+export const followChartDepth = () => effect(() => {
+  chartDepth.value = page.view.value === "race" ? depth.value : "study";
 });
 
 /** Whether at least so much is shown. @param {Depth} name */

@@ -143,5 +143,7 @@ def test_report_shows_each_world_with_its_references(
     assert "Greedy, true model" in text
     assert "within 3 % of its design" in text
     assert ("Earned: the sum of the rewards" in text) == (experiment == "recovery")
+    for window in ("1 – 50", "51 – 100", "101 – 150", "151 – 200"):
+        assert (f"Earned in {window}" in text) == (experiment == "recovery")
     page.get_by_role("button", name="Slope").click()
     assert "4°" in text_of(page)

@@ -98,8 +98,7 @@ const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace"
 /** What an experiment has that sweeps over settings. */
 const SWEEP = {
   about: "About it", measure: /** @type {const} */ ("distance"), references: ["greedy"], is_timed: false,
-  is_published: false,
-  takes_settings: true,
+  is_published: false, takes_settings: true, earning_steps: null, paper_gaits: {},
 };
 const EXPERIMENT = {
   name: "", seeds: 30, seed: 0, gaits: ["tripod", "wave"], observations: ["measured"], robots: ["stiff"],
@@ -187,7 +186,7 @@ export const OPTIONS = {
   experiments: [
     {
       ...described("table1", "Table 1"), ...SWEEP, references: ["greedy", "two-step"], is_timed: true,
-      is_published: true, takes_settings: false,
+      is_published: true, takes_settings: false, paper_gaits: { wave: "The-Wave" },
       fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] },
       simulator_defaults: { mujoco: {}, kinematic: {} }, agents: [],
     },
@@ -209,7 +208,7 @@ export const OPTIONS = {
     },
     {
       ...described("recovery", "Recovery"), ...SWEEP, measure: /** @type {const} */ ("recovery"), takes_settings: false,
-      fields: IN_WORLDS, grid: ["steps"], agents: ["learner", "tracer"],
+      earning_steps: 50, fields: IN_WORLDS, grid: ["steps"], agents: ["learner", "tracer"],
       defaults: { ...EXPERIMENT, worlds: ["limp-pair"], tolerance: 0.03 },
       simulator_defaults: { mujoco: {}, kinematic: { worlds: ["flat"], tolerance: 0 } },
     },

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
-import { Part } from "../../static/js/components/elements.js";
+import { Part } from "../../static/js/components/parts.js";
 import {
   actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, partsOf,
 } from "../../static/js/features.js";

@@ -20,6 +20,11 @@ test("digits are grouped by a thin space from 10 000 on", () => {
   assert.equal(format.whole(undefined), "–");
 });
 
+test("numbers in a text are grouped alike", () => {
+  assert.equal(format.withGroupedDigits("after 1,000 and 12,500 steps, not 1,00 or 0.1,000"),
+    "after 1000 and 12\u202f500 steps, not 1,00 or 0.1,000");
+});
+
 test("a count has its noun in singular or plural", () => {
   assert.equal(format.count(1, "step"), "1 step");
   assert.equal(format.count(0, "step"), "0 steps");

@@ -13,6 +13,7 @@ from hexapods.experiments.config import (
     settings_by_name,
 )
 from hexapods.experiments.presets import GRID, PRESETS
+from hexapods.experiments.report.page_options import result_options
 from hexapods.runs.catalogue import SIMULATOR_TEXTS
 
 LIMITS = {"seeds": [1, MAX_SEEDS], "trials": [1, MAX_TRIALS], "settings": [1, MAX_SETTINGS]}
@@ -56,11 +57,10 @@ def experiment_options(agents: Collection[str]) -> list[dict[str, Any]]:
                 "simulator_defaults": simulator_defaults,
                 "agents": [a for a in agents if "agents" in fields and compares(preset, a)],
                 "about": preset.about or preset.description,
-                "measure": preset.measure,
                 "references": list(preset.references),
                 "is_timed": preset.is_timed,
                 "is_published": preset.is_published,
-                "takes_settings": preset.takes_settings,
+                **result_options(preset),
             }
         )
     return options

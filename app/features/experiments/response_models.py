@@ -47,6 +47,8 @@ class ExperimentOption(Described):
         is_timed: whether a race measures decision times in each place.
         is_published: whether the paper prints its numbers.
         takes_settings: whether its agents' settings may have several values.
+        earning_steps: steps after each evaluation whose rewards are added up; null where none are.
+        paper_gaits: the paper's names of the gaits, where the paper prints its numbers.
     """
 
     fields: list[str]
@@ -60,6 +62,8 @@ class ExperimentOption(Described):
     is_timed: bool
     is_published: bool
     takes_settings: bool
+    earning_steps: Count | None
+    paper_gaits: dict[str, str]
 
 
 class SummaryEvent(Answer):

@@ -8,7 +8,8 @@ from hexapods.agents.registry import BUILT_IN, is_loaded
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.gait import GAIT_TITLES
 from hexapods.domain.robot import as_mapping
-from hexapods.experiments.presets import PRESETS
+from hexapods.experiments.presets import PRESETS, Preset
+from hexapods.experiments.published import GAITS
 from hexapods.runs.best_known import COVERAGE, DEFINITION
 from hexapods.runs.catalogue import (
     FIELD_TITLES,
@@ -50,11 +51,20 @@ def page_options(summary: Mapping[str, Any]) -> dict[str, Any]:
             for name, setting in all_settings([name for name in agents if is_loaded(name)]).items()
         },
         "experiments": [
-            {"name": name, "measure": preset.measure, "takes_settings": preset.takes_settings}
-            for name, preset in PRESETS.items()
+            {"name": name, **result_options(preset)} for name, preset in PRESETS.items()
         ],
         "titles": FIELD_TITLES,
         "limits": {},
         "help": {"best_known": DEFINITION, "best_known_where": COVERAGE},
         "defaults": {"race": {"steps": RACE_STEPS}},
+    }
+
+
+def result_options(preset: Preset) -> dict[str, Any]:
+    """Return what the components need of an experiment to show its result."""
+    return {
+        "measure": preset.measure,
+        "takes_settings": preset.takes_settings,
+        "earning_steps": preset.earning_steps,
+        "paper_gaits": dict(GAITS) if preset.is_published else {},
     }

@@ -2,13 +2,12 @@
 // complete without a server, and asks for nothing.
 import { render } from "preact";
 import { html } from "../../js/components/elements.js";
-import { page } from "../../js/page-state.js";
-import { options } from "../../js/store.js";
+import { options } from "../../js/options.js";
 import { Findings } from "./components/all-findings.js";
+import { followPrinting } from "./printing.js";
 import { configInWords, findingIn } from "./words.js";
 
 /** @import { Run, Summary } from "../../js/types.js" */
-/** @import { Signal } from "@preact/signals" */
 
 /** What else the file tells. @typedef {{ title: string, command: string }} Report */
 
@@ -29,17 +28,11 @@ const OfflineReport = ({ summary, report }) => html`
         ${findingIn(summary) && html`<p class="finding">${findingIn(summary)}</p>`}
         <p class="dim">${configInWords(/** @type {Run["config"]} */ (/** @type {unknown} */ (summary.config)))}</p>
       </div>
-      <${Findings} known=${summary} more=${[["Command", html`<code>${report.command}</code>`], ["Files", FILES]]} />
+      <${Findings} summary=${summary} more=${[["Command", html`<code>${report.command}</code>`], ["Files", FILES]]} />
     </div>
   </main>
 `;
 
-/** Print what is folded as well. */
-const unfold = () =>
-  document.querySelectorAll("details:not(.menu)").forEach((details) => details.setAttribute("open", ""));
-
 options.value = dataOf("options");
-// Outside the view of the race charts have all their tools.
-/** @type {Signal<string>} */ (page.view).value = "experiments";
 render(html`<${OfflineReport} summary=${dataOf("summary")} report=${dataOf("report")} />`, document.body);
-addEventListener("beforeprint", unfold);
+followPrinting();

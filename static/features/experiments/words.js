@@ -1,7 +1,7 @@
 // An experiment in few words: its state, what is the same in all its trials, and what came of it as the server says.
-import { count, duration, listed, percentage, sentence, whole } from "../../js/format.js";
+import { count, duration, listed, percentage, sentence, whole, withGroupedDigits } from "../../js/format.js";
 import { customRobotInWords, presetOf, storedName } from "../../js/robots.js";
-import { served } from "../../js/store.js";
+import { served } from "../../js/options.js";
 import { agentTitle, gaitTitle, observationTitle, rewardInWords, simulatorTitle } from "../../js/titles.js";
 import { experimentKind } from "./kinds.js";
 
@@ -78,14 +78,14 @@ export function verdictsInWords(claims) {
 
 /**
  * What an experiment found, as the server wrote it, else its verdicts; empty where it says nothing yet.
- * @param {Summary | null} known
+ * @param {Summary | null} summary
  */
-export const findingIn = (known) => known?.finding || verdictsInWords(known?.claims ?? []);
+export const findingIn = (summary) => withGroupedDigits(summary?.finding || verdictsInWords(summary?.claims ?? []));
 
 /**
  * What came of an experiment in its row of the list, whether its report was opened or not.
  * @param {Run} run
- * @param {Summary | null} known
+ * @param {Summary | null} summary
  */
-export const outcomeOf = ({ result }, known) =>
-  findingIn(known) || result?.finding || verdictsInWords(result?.claims ?? []);
+export const outcomeOf = ({ result }, summary) =>
+  findingIn(summary) || result?.finding || verdictsInWords(result?.claims ?? []);

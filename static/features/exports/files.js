@@ -1,6 +1,6 @@
 // Files of a run's walk for other programs: what the server offers, and what it lacks.
 import { addressOf, request } from "../../js/api.js";
-import { saveFile } from "../../js/files.js";
+import { saveFile } from "../../js/save-file.js";
 import { served } from "../../js/store.js";
 
 /** @import { RunKey } from "../../js/api.js" */

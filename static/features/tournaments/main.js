@@ -1,7 +1,8 @@
 // Entry point of a tournament's page: of entrants and watchers, of its operator, or for the projector.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { html, Icon, Loaded } from "../../js/components/elements.js";
+import { html, Icon } from "../../js/components/elements.js";
+import { Loaded } from "../../js/components/parts.js";
 import { codeInGroups } from "../../js/format.js";
 import { followTheme, nextTheme, theme, toastMessage } from "../../js/page.js";
 import { isAway, options } from "../../js/store.js";

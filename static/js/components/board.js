@@ -15,7 +15,8 @@ import { runs, scene, served } from "../store.js";
 import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { isAtLeast } from "../workspace.js";
-import { html, Icon, Loaded, Slot } from "./elements.js";
+import { html, Icon } from "./elements.js";
+import { Loaded, Slot } from "./parts.js";
 import { LearningChart } from "./learning.js";
 import { RaceChart } from "./race-chart.js";
 

@@ -1,19 +1,19 @@
 // Charts: lines over an axis with a crosshair, zoom, table and files, and the placeholder of a chart without data.
 import { useMemo, useRef, useState } from "preact/hooks";
-import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
+import { chartDepth, crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
 import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { cssColour, LineLabels, MarkLines, placeCaptions, roomFor, widthOf } from "./line-labels.js";
-import { page } from "../page-state.js";
 import { isProjected } from "../page.js";
 import { thinned, ticks } from "../scale.js";
-import { served } from "../store.js";
-import { isAtLeast } from "../workspace.js";
+import { served } from "../options.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
+import { FileMenu } from "./file-menu.js";
 
 /** @import { ComponentChildren } from "preact" */
 /** @import { Line, Mark, Range } from "../chart.js" */
 /** @import { Axis } from "./crosshair.js" */
+/** @import { FileKind } from "./file-menu.js" */
 /** @import { Frame } from "./line-labels.js" */
 /** @import { Toggled } from "../types.js" */
 
@@ -91,9 +91,9 @@ export function Chart(props) {
   `;
 }
 
-/** In the view of the race who watches sees lines, who tries reads them, and who studies has their numbers as well. */
-const canRead = () => page.view.value !== "race" || isAtLeast("try");
-const isFull = () => page.view.value !== "race" || isAtLeast("study");
+/** Who watches sees lines, who tries reads them, and who studies has their numbers as well. */
+const canRead = () => chartDepth.value !== "watch";
+const isFull = () => chartDepth.value === "study";
 
 /** @typedef {Frame & { xTicks: number[], yTicks: number[] }} TickedFrame */
 /** @typedef {Parameters<typeof Chart>[0]} ChartProps */
@@ -235,41 +235,28 @@ export const BestKnownKey = ({ distance }) => html`
 
 // ---- the menu: what the keys do, and the chart as a file
 
-/** @type {["png" | "svg" | "csv", string][]} */
-const FILES = [["png", "Download as PNG"], ["svg", "Download as SVG"], ["csv", "Download its numbers as CSV"]];
 const MENU_FACTOR = 2;
 
 /** @param {{ chart: ShownChart, axis: Axis, host: { current: HTMLElement } }} props */
 function ChartMenu({ chart, axis, host }) {
-  const [problem, setProblem] = useState("");
   const index = readIndex(axis);
   const x = index === null ? null : axis.xs[index];
-  /** @param {"png" | "svg" | "csv"} kind */
+  /** @param {FileKind} kind */
   const save = async (kind) => {
-    setProblem("");
-    try {
-      const { saveChart } = await import("./chart-files.js");
-      const svg = /** @type {SVGSVGElement} */ (host.current.querySelector("svg"));
-      await saveChart(kind, { ...chart, svg, file: fileNameOf(chart.name) });
-    } catch {
-      setProblem("The file could not be made. Load the page again.");
-    }
+    const { saveChart } = await import("./chart-files.js");
+    const svg = /** @type {SVGSVGElement} */ (host.current.querySelector("svg"));
+    await saveChart(kind, { ...chart, svg, file: fileNameOf(chart.name) });
   };
   return html`
-    <details class="menu chart-menu">
-      <summary class="quiet square small" aria-label=${`More of ${chart.name}: zoom, download`}>⋯</summary>
-      <div class="menu-body">
-        ${axis.seek && x !== null && html`
-          <button class="quiet" onClick=${() => axis.seek?.(x)}>Show this moment: ${chart.x.text(x)}</button>
-        `}
-        <button class="quiet" onClick=${() => zoomBy(axis, MENU_FACTOR)}>Zoom in</button>
-        ${zoomOf(axis.axis) && html`
-          <button class="quiet" onClick=${() => zoomBy(axis, 1 / MENU_FACTOR)}>Zoom out</button>
-        `}
-        ${FILES.map(([kind, words]) => html`<button class="quiet" onClick=${() => save(kind)}>${words}</button>`)}
-        ${problem && html`<p class="bad" role="alert">${problem}</p>`}
-      </div>
-    </details>
+    <${FileMenu} label=${`More of ${chart.name}: zoom, download`} kinds=${["png", "svg", "csv"]} save=${save}>
+      ${axis.seek && x !== null && html`
+        <button class="quiet" onClick=${() => axis.seek?.(x)}>Show this moment: ${chart.x.text(x)}</button>
+      `}
+      <button class="quiet" onClick=${() => zoomBy(axis, MENU_FACTOR)}>Zoom in</button>
+      ${zoomOf(axis.axis) && html`
+        <button class="quiet" onClick=${() => zoomBy(axis, 1 / MENU_FACTOR)}>Zoom out</button>
+      `}
+    <//>
   `;
 }
 

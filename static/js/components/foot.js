@@ -13,7 +13,8 @@ import { agentOf, learners, placeOf } from "../settings.js";
 import { isAway, scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
-import { goToField, html, Icon, Loaded, ProgressBar, UnknownParts, Slot } from "./elements.js";
+import { goToField, html, Icon, ProgressBar, UnknownParts } from "./elements.js";
+import { Loaded, Slot } from "./parts.js";
 
 /** @import { Run } from "../types.js" */
 

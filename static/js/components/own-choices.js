@@ -6,7 +6,8 @@ import { closeReplay, openReplay } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive, isWalk } from "../selectors.js";
 import { isAway, scene } from "../store.js";
-import { html, Icon, Slot } from "./elements.js";
+import { html, Icon } from "./elements.js";
+import { Slot } from "./parts.js";
 
 /** @import { Run } from "../types.js" */
 

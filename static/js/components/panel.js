@@ -13,7 +13,8 @@ import {
   togglePin,
 } from "../workspace.js";
 import { Board } from "./board.js";
-import { html, Icon, Loaded, Part, Slot } from "./elements.js";
+import { html, Icon } from "./elements.js";
+import { Loaded, Part, Slot } from "./parts.js";
 import { Foot } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */

@@ -2,7 +2,8 @@
 import { downloads } from "../files.js";
 import { shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
-import { html, Slot } from "./elements.js";
+import { html } from "./elements.js";
+import { Slot } from "./parts.js";
 
 export function RunFiles() {
   const run = shownRun.value;

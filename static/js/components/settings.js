@@ -16,7 +16,8 @@ import {
 } from "../titles.js";
 import { isAtLeast } from "../workspace.js";
 import { Beforehand } from "./beforehand.js";
-import { HexapodGlyph, html, Slot } from "./elements.js";
+import { HexapodGlyph, html } from "./elements.js";
+import { Slot } from "./parts.js";
 import {
   attributesOf, closable, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
@@ -342,8 +343,7 @@ function Pace() {
   const run = trainingInFields();
   const pace = run ? rateNow(run, "pace") : form.value.pace;
   const choices = PACES.some(([choice]) => choice === pace) ? PACES : [...PACES, [pace, `×${pace}`]];
-  /** @param {number} value */
-  const onValue = (value) => {
+  const onValue = (/** @type {number} */ value) => {
     setField("pace", value);
     tune({ pace: value });
   };

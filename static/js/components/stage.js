@@ -14,7 +14,8 @@ import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { isAway, runs, scene, stage } from "../store.js";
 import { isAtLeast } from "../workspace.js";
-import { html, Icon, Loaded } from "./elements.js";
+import { html, Icon } from "./elements.js";
+import { Loaded } from "./parts.js";
 import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */

@@ -3,13 +3,16 @@
 import csv
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from playwright.sync_api import Page
 
 from hexapods.domain.records import from_json
+from hexapods.experiments import report
 from hexapods.experiments.config import (
     ExperimentConfig,
 )
@@ -173,6 +176,9 @@ def test_the_table_has_the_papers_values_in_three_units(shown: Page, tmp_path: P
         assert table.get_by_role("columnheader", name=column, exact=True).count() == 1
     assert "paper 0.25 m" in table.inner_text().replace("\xa0", " ")
     assert "paper: unfinished" in table.inner_text()
+    assert (
+        table.get_by_role("rowheader", name="Left-right, opposite (LeftRight-Origin)").count() == 1
+    )
     assert "†" in table.inner_text()
     total = table.locator("tbody tr").nth(1).locator("td.reference").first
     for unit, value in (("metres", "0.50"), ("half grid sides", "25.0"), ("relative", "100")):
@@ -191,9 +197,89 @@ def test_a_claim_has_its_verdict_in_every_case_and_its_evidence(
     )
     for claim in summary["claims"]:
         for words in (claim["claim"], claim["criterion"], *(c["evidence"] for c in claim["where"])):
-            assert words.replace("\xa0", " ") in text
-    for section in summary["story"]:
-        assert shown.get_by_role("heading", name=section["heading"]).count() == 1
+            assert as_shown(words) in text
+    assert headings_below(shown, "The paper’s claims over all seeds") == [
+        as_shown(claim["claim"]) for claim in summary["claims"]
+    ]
+    assert headings_below(shown, "Findings") == [one["heading"] for one in summary["story"]]
+    assert "2000 resamples" in text
+
+
+def as_shown(words: str) -> str:
+    """Return a text of a summary as `text_of` has it; numbers below 10,000 are not grouped."""
+    return re.sub(r"(?<=\d),(?=\d{3})", "", words.replace("\xa0", " "))
+
+
+def headings_below(tab: Page, title: str) -> list[str]:
+    """Return the headings of the third level in the section of a heading of the second."""
+    section = tab.get_by_role("region", name=title)
+    assert section.get_by_role("heading", level=2, name=title).count() == 1
+    return section.get_by_role("heading", level=3).all_inner_texts()
+
+
+@pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep", "league"])
+def test_every_table_has_a_caption_and_every_switch_a_title_on_paper(
+    shown: Page, tmp_path: Path, experiment: str
+) -> None:
+    agents = {"agents": ("q-learning", "sarsa")} if experiment in ("sweep", "league") else {}
+    opened(shown, tmp_path, small(experiment, robots=ROBOTS, **agents)[0])
+    assert shown.locator("table").count() > 0
+    assert shown.locator("table:not(:has(> caption))").count() == 0
+    places = [
+        button.inner_text() for button in shown.get_by_label("Place").get_by_role("button").all()
+    ]
+    assert len(places) == (0 if experiment == "sweep" else 2)
+    shown.evaluate("dispatchEvent(new Event('beforeprint'))")
+    for place in places:
+        assert shown.get_by_role("heading", level=3, name=place, exact=True).count() >= 1
+    shown.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert (
+        shown.get_by_role("heading", level=3, name="Feet measured, stiff", exact=True).count() == 0
+    )
+
+
+@pytest.mark.parametrize("experiment", ["table1", "sweep"])
+def test_a_table_with_strips_is_downloaded_as_svg_and_png(
+    shown: Page, tmp_path: Path, experiment: str
+) -> None:
+    swept = {"alpha": (0.1, 0.3)} if experiment == "sweep" else {}
+    opened(shown, tmp_path, small(experiment, **swept)[0])
+    menu = shown.get_by_label(re.compile("^Download "))
+    content = {}
+    for kind in ("SVG", "PNG"):
+        menu.first.click()
+        with shown.expect_download() as download:
+            shown.get_by_role("button", name=f"Download as {kind}").first.click()
+        content[kind] = Path(download.value.path()).read_bytes()
+        menu.first.click()
+    assert content["PNG"].startswith(b"\x89PNG")
+    picture = ElementTree.fromstring(content["SVG"])
+    texts = ["".join(text.itertext()) for text in picture.findall(".//{*}text")]
+    assert {"one seed", "0.00\u00a0m"} <= set(texts)
+    strips = {"table1": 4, "sweep": 2}[experiment]
+    dots = picture.findall(".//{*}circle")
+    assert len(dots) == strips * 3 + 1  # seeds, and the one of the legend
+    if experiment == "table1":
+        assert {"Left-right, opposite (LeftRight-Origin)", "Q-learning, 500 steps"} <= set(texts)
+
+
+def test_only_modules_of_the_page_are_run(page: Page, tmp_path: Path) -> None:
+    opened(page, tmp_path, small("sweep")[0])
+    forged = """new Promise((resolve) => {
+        addEventListener("securitypolicyviolation", (event) => resolve(event.effectiveDirective));
+        const script = Object.assign(document.createElement("script"), {
+            type: "module", src: "data:text/javascript,window.isForged = true",
+        });
+        document.body.append(script);
+    })"""
+    assert page.evaluate(forged) == "script-src-elem"
+    assert page.evaluate("window.isForged") is None
+
+
+def test_no_module_of_the_report_names_an_experiment() -> None:
+    folder = Path(report.__file__).parent
+    named = re.compile("|".join(rf"['\"]{name}['\"]" for name in PRESETS))
+    assert [path.name for path in folder.glob("*.py") if named.search(path.read_text())] == []
 
 
 def test_the_page_does_not_scroll_horizontally(shown: Page, tmp_path: Path) -> None:

@@ -4,7 +4,8 @@ import { paragraphs } from "../lessons/markdown.js";
 import { May } from "../room/allowed-settings.js";
 import { Answer, KINDS } from "../room/questions.js";
 import { useEffect } from "preact/hooks";
-import { html, withStyle } from "../../../js/components/elements.js";
+import { html } from "../../../js/components/elements.js";
+import { withStyle } from "../../../js/components/parts.js";
 
 /** @import { Block, Inline } from "../lessons/markdown.js" */
 

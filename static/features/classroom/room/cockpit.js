@@ -1,7 +1,8 @@
 // The teacher's cockpit: the code, the card and the next one, what all may do, who is in and how far.
 import { signal } from "@preact/signals";
 import { DotStrip } from "../../../js/components/dot-strip.js";
-import { Dialog, html, Icon, Slot } from "../../../js/components/elements.js";
+import { Dialog, html, Icon } from "../../../js/components/elements.js";
+import { Slot } from "../../../js/components/parts.js";
 import { Prose } from "../components/prose.js";
 import { resultsFile } from "../api.js";
 import { PupilsWindow, Sharing } from "../components/sharing.js";

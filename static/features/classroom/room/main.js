@@ -1,7 +1,8 @@
 // Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { html, Loaded, withStyle } from "../../../js/components/elements.js";
+import { html } from "../../../js/components/elements.js";
+import { Loaded, withStyle } from "../../../js/components/parts.js";
 import { followTheme } from "../../../js/page.js";
 import { Phone } from "./phone.js";
 import { followOwnRun } from "./picture.js";

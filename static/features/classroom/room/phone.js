@@ -1,7 +1,8 @@
 // The page of a participant: the card, the own prediction, the own robot, and after the reveal its place in the class.
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
-import { html, Loaded, Slot } from "../../../js/components/elements.js";
+import { html } from "../../../js/components/elements.js";
+import { Loaded, Slot } from "../../../js/components/parts.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";

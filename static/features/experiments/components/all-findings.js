@@ -15,7 +15,7 @@ import { experimentKind } from "../kinds.js";
 
 /** What happens at a click on the dot of a seed. @typedef {(setting: Setting, distance_m: number) => unknown} OnSeed */
 
-/** The table or chart of an experiment, by what it measures. @param {Summary} known */
+/** The table or chart of an experiment, by what it measures. @param {Summary} summary */
 function figureOf({ experiment }) {
   const kind = experimentKind(experiment);
   if (!kind) return null;
@@ -26,21 +26,21 @@ function figureOf({ experiment }) {
 /**
  * `children` follow the figure; `more` are further rows of the method.
  * @param {{
- *   known: Summary, onSeed?: OnSeed | null, more?: [string, ComponentChildren][], children?: ComponentChildren
+ *   summary: Summary, onSeed?: OnSeed | null, more?: [string, ComponentChildren][], children?: ComponentChildren
  * }} props
  */
-export function Findings({ known, onSeed = null, more = [], children }) {
-  const Figure = figureOf(known);
+export function Findings({ summary, onSeed = null, more = [], children }) {
+  const Figure = figureOf(summary);
   return html`
-    <${LeftOut} trials=${known.trials} />
-    ${Figure && html`<${Figure} known=${known} onSeed=${onSeed} />`}
+    <${LeftOut} trials=${summary.trials} />
+    ${Figure && html`<${Figure} summary=${summary} onSeed=${onSeed} />`}
     ${children}
-    ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
-    <${Versus} known=${known} />
-    <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
-    <${Narrative} parts=${known.story ?? []} />
-    <${FairClocks} timed=${known.timed ?? []} />
-    <${Method} known=${known} more=${more} />
+    ${!summary.worlds?.length && html`<${AtAGlance} summary=${summary} />`}
+    <${Versus} summary=${summary} />
+    <${Claims} claims=${summary.claims ?? []} isComplete=${summary.trials.done >= summary.trials.total} />
+    <${Narrative} parts=${summary.story ?? []} />
+    <${FairClocks} timed=${summary.timed ?? []} />
+    <${Method} summary=${summary} more=${more} />
   `;
 }
 
@@ -83,20 +83,20 @@ function LeftOut({ trials }) {
 /** @param {(string | 0 | false | null | undefined)[]} parts */
 const joined = (parts) => parts.filter(Boolean).join(", ");
 
-/** @param {Summary} known */
+/** @param {Summary} summary */
 const simulatorOf = ({ config, versions = {} }) => {
   const version = config.simulator === "mujoco" ? versions.mujoco : null;
   return [simulatorTitle(config.simulator), version].filter(Boolean).join(" ");
 };
 
-/** @param {Summary} known */
+/** @param {Summary} summary */
 const versionsOf = ({ versions = {} }) =>
   joined(Object.entries(versions).filter(([name]) => name !== "mujoco").map(([name, version]) => `${name} ${version}`));
 
-/** @param {Summary} known */
+/** @param {Summary} summary */
 const machineOf = ({ machine = {} }) => joined([machine.platform, machine.cores && count(machine.cores, "core")]);
 
-/** @param {{ cost: Summary["cost"] }} one */
+/** @param {{ cost: Summary["cost"] }} summary */
 const timeOf = ({ cost }) =>
   cost && joined([
     cost.wall_s && duration(cost.wall_s), cost.compute_s && `${duration(cost.compute_s)} of computing`,
@@ -104,24 +104,24 @@ const timeOf = ({ cost }) =>
     cost.workers && count(cost.workers, "worker"),
   ]);
 
-/** @param {Summary} known */
+/** @param {Summary} summary */
 const trialsOf = ({ trials: { done, total, failed, set_aside = [] } }) =>
   `${whole(done)} of ${whole(total)} done, ${whole(failed)} failed, ${whole(set_aside.length)} set aside`;
 
-const STATISTICS = `Interquartile means with stratified bootstrap percentile intervals (2,000 resamples; the gaits are
+const STATISTICS = `Interquartile means with stratified bootstrap percentile intervals (2000 resamples; the gaits are
   the strata where they are taken together); shares with Wilson intervals; no correction for how many comparisons there
   are.`;
 
-/** @param {{ known: Summary, more: [string, ComponentChildren][] }} props */
-function Method({ known, more }) {
-  const { seeds, seed } = known.config;
+/** @param {{ summary: Summary, more: [string, ComponentChildren][] }} props */
+function Method({ summary, more }) {
+  const { seeds, seed } = summary.config;
   const rows = [
     ["Seeds", `${count(seeds, "seed")}, spawned from ${seed}`],
-    ["Trials", trialsOf(known)],
-    ["Simulator", simulatorOf(known)],
-    ["Versions", versionsOf(known)],
-    ["Machine", machineOf(known)],
-    ["Time", timeOf(known)],
+    ["Trials", trialsOf(summary)],
+    ["Simulator", simulatorOf(summary)],
+    ["Versions", versionsOf(summary)],
+    ["Machine", machineOf(summary)],
+    ["Time", timeOf(summary)],
     ["Statistics", STATISTICS],
     ...more,
   ];

@@ -8,23 +8,20 @@ import { agentOf } from "../../../js/settings.js";
 import { gaitTitle } from "../../../js/titles.js";
 import { Chart } from "../../../js/components/charts.js";
 import { html } from "../../../js/components/elements.js";
-import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, PlaceWords, UnitSwitch } from "./report-tools.js";
+import { drawn } from "../printing.js";
+import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, PlaceTitle, PlaceWords, UnitSwitch } from "./report-tools.js";
 
 /** @import { Line } from "../../../js/chart.js" */
-/** @import { CurveOfSetting, Summary } from "../../../js/types.js" */
+/** @import { CurveOfSetting, Place, Summary } from "../../../js/types.js" */
 
-/** @param {{ known: Summary }} props */
-export function FigureFour({ known }) {
-  const curves = known.curves.filter(({ steps }) => steps.length > 0);
+/** @param {{ summary: Summary }} props */
+export function FigureFour({ summary }) {
+  const curves = summary.curves.filter(({ steps }) => steps.length > 0);
   const places = placesOf(curves);
   const [chosen, setChosen] = useState(/** @type {string | null} */ (null));
   if (!places.length) return null;
   const place = places.find(({ key }) => key === chosen) ?? places[0];
-  const here = curves.filter((one) => placeOf(one) === place.key).map(toUnit);
-  const charts = here.map((one) => ({ lines: [one], marks: asMarks(levelsOf(one)) }));
-  const axes = { x: stepsAxis(here, known.config), y: distanceAxis(charts) };
-  const gaits = [...new Set(here.map(({ gait }) => gait))];
-  const agents = [...new Set(here.map(({ agent }) => agent))];
+  const agents = [...new Set(curves.map(({ agent }) => agent))];
   return html`
     <section class="panel figure-four" aria-labelledby="figure-four">
       <div class="report-tools">
@@ -32,20 +29,34 @@ export function FigureFour({ known }) {
         <${PlaceSwitch} places=${places} value=${place.key} onValue=${setChosen} />
         <${UnitSwitch} />
       </div>
-      <${PlaceWords} place=${place} />
       <p class="dim">
         ${sentence(UNIT_NAMES[unit.value])}, against steps of practice.
         Line: interquartile mean; band: its 95 % interval; thin: each seed.
-        ${here.some(isInOneGo) && " Dotted: as many steps in one go, in which ε falls once and not in each block."}
+        ${curves.some(isInOneGo) && " Dotted: as many steps in one go, in which ε falls once and not in each block."}
       </p>
-      <${AgentKey} agents=${agents}><${LevelKey} levels=${keyOf(here)} /><//>
-      <div class="gait-panels">
-        ${gaits.map((gait) => html`
-          <${Gait} key=${gait} gait=${gait} curves=${here.filter((one) => one.gait === gait)} axes=${axes} />
-        `)}
-      </div>
-      <${BestKnownWords} distances=${here.map(({ best_known_m }) => best_known_m)} />
+      <${AgentKey} agents=${agents}><${LevelKey} levels=${keyOf(curves.map(toUnit))} /><//>
+      ${drawn(places, place).map((each) => html`
+        <${InPlace} key=${each.key} summary=${summary} curves=${curves} place=${each} places=${places} />
+      `)}
+      <${BestKnownWords} distances=${curves.map(({ best_known_m }) => best_known_m)} />
     </section>
+  `;
+}
+
+/** @param {{ summary: Summary, curves: CurveOfSetting[], place: Place, places: Place[] }} props */
+function InPlace({ summary, curves, place, places }) {
+  const here = curves.filter((curve) => placeOf(curve) === place.key).map(toUnit);
+  const charts = here.map((curve) => ({ lines: [curve], marks: asMarks(levelsOf(curve)) }));
+  const axes = { x: stepsAxis(here, summary.config), y: distanceAxis(charts) };
+  const gaits = [...new Set(here.map(({ gait }) => gait))];
+  return html`
+    <${PlaceTitle} place=${place} places=${places} />
+    <${PlaceWords} place=${place} />
+    <div class="gait-panels">
+      ${gaits.map((gait) => html`
+        <${Gait} key=${gait} gait=${gait} curves=${here.filter((curve) => curve.gait === gait)} axes=${axes} />
+      `)}
+    </div>
   `;
 }
 
@@ -57,7 +68,7 @@ export function FigureFour({ known }) {
 
 /**
  * The lines of references of a curve's gait that are known, in the unit that is shown.
- * @param {Levels} one
+ * @param {Levels} levels
  */
 const levelsOf = ({ greedy, best }) => [
   { name: agentOf("greedy").title, kind: "greedy", value: greedy },
@@ -65,30 +76,30 @@ const levelsOf = ({ greedy, best }) => [
 ].flatMap(({ value, ...level }) => (value === null ? [] : [{ ...level, value }]));
 
 /** One of each kind. @param {ShownCurve[]} curves */
-const keyOf = (curves) => [...new Map(curves.flatMap(levelsOf).map((one) => [one.kind, one])).values()];
+const keyOf = (curves) => [...new Map(curves.flatMap(levelsOf).map((level) => [level.kind, level])).values()];
 
-/** @param {ShownCurve} one */
+/** @param {ShownCurve} curve */
 const lastOf = ({ ys }) => shown(ys.at(-1));
-/** Whether it practised all its steps in one go. @param {{ blocks: number }} one */
+/** Whether it practised all its steps in one go. @param {{ blocks: number }} curve */
 const isInOneGo = ({ blocks }) => blocks === 1;
-/** @param {{ agent: string, blocks: number }} one */
-const titleOf = (one) => `${agentOf(one.agent).title}${isInOneGo(one) ? ", in one go" : ""}`;
+/** @param {{ agent: string, blocks: number }} curve */
+const titleOf = (curve) => `${agentOf(curve.agent).title}${isInOneGo(curve) ? ", in one go" : ""}`;
 /** Dashes of a practice in one go [px]. */
 const DOTTED = [2, 3];
 
 /** @param {{ gait: string, curves: ShownCurve[], axes: Pick<Parameters<typeof Chart>[0], "x" | "y"> }} props */
 function Gait({ gait, curves, axes }) {
   const levels = levelsOf(curves[0]);
-  const ends = curves.map((one) => `${one.name} ${lastOf(one)} after ${count(one.xs.at(-1) ?? 0, "step")}`);
+  const ends = curves.map((curve) => `${curve.name} ${lastOf(curve)} after ${count(curve.xs.at(-1) ?? 0, "step")}`);
   const lines = levels.map(({ name, value }) => `; ${name.toLowerCase()} ${shown(value)}`);
   const label = `${gaitTitle(gait)}: ${ends.join(", ")}${lines.join("")}`;
-  const inBlocks = curves.filter((one) => !isInOneGo(one));
+  const inBlocks = curves.filter((curve) => !isInOneGo(curve));
   const walkers = inBlocks.length === 1 ? walkersOf(inBlocks[0]) : "";
   return html`
     <figure>
       <figcaption>
         <b>${gaitTitle(gait)}</b><span class="dim num">${inBlocks.map(lastOf).join(" · ")}${walkers}${
-          curves.filter(isInOneGo).map((one) => ` · ${lastOf(one)} in one go`)}</span>
+          curves.filter(isInOneGo).map((curve) => ` · ${lastOf(curve)} in one go`)}</span>
       </figcaption>
       <${Chart} name=${gaitTitle(gait)} label=${label} lines=${curves} marks=${asMarks(levels)} xs=${curves[0].xs}
         ...${axes} />
@@ -96,30 +107,30 @@ function Gait({ gait, curves, axes }) {
   `;
 }
 
-/** @param {{ walkers: (number | null)[] }} one */
+/** @param {{ walkers: (number | null)[] }} curve */
 const walkersOf = ({ walkers }) => {
   const last = walkers.at(-1) ?? null;
   return last === null ? "" : `, ${percentage(last)} walk`;
 };
 
-/** A curve as a line of a chart, in the chosen unit. @type {(one: CurveOfSetting) => ShownCurve} */
-function toUnit(one) {
-  const factor = factorOf(one) ?? 0;
+/** A curve as a line of a chart, in the chosen unit. @type {(curve: CurveOfSetting) => ShownCurve} */
+function toUnit(curve) {
+  const factor = factorOf(curve) ?? 0;
   /** @param {(number | null)[]} list */
   const all = (list) => list.map((value) => inUnit(value, factor));
   return {
-    ...one,
-    name: titleOf(one),
-    color: agentOf(one.agent).color,
-    xs: one.steps,
-    ys: all(one.iqm_m),
-    low: all(one.low_m),
-    high: all(one.high_m),
+    ...curve,
+    name: titleOf(curve),
+    color: agentOf(curve.agent).color,
+    xs: curve.steps,
+    ys: all(curve.iqm_m),
+    low: all(curve.low_m),
+    high: all(curve.high_m),
     // Those of the blocks are enough to see how far seeds lie apart.
-    seeds: isInOneGo(one) ? [] : one.points_m.map(all),
-    dots: !isInOneGo(one),
-    dash: isInOneGo(one) ? DOTTED : [],
-    greedy: inUnit(one.greedy_m, factor),
-    best: inUnit(one.best_known_m, factor),
+    seeds: isInOneGo(curve) ? [] : curve.points_m.map(all),
+    dots: !isInOneGo(curve),
+    dash: isInOneGo(curve) ? DOTTED : [],
+    greedy: inUnit(curve.greedy_m, factor),
+    best: inUnit(curve.best_known_m, factor),
   };
 }

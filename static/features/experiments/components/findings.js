@@ -1,13 +1,14 @@
 // Findings over all seeds: gaits together, learners against each other, claims, conclusions, real clock.
 import { useMemo } from "preact/hooks";
 import { greedyTotals, placeOf } from "../distances.js";
-import { decision, metres, percentage, whole } from "../../../js/format.js";
+import { decision, metres, percentage, whole, withGroupedDigits } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
-import { served } from "../../../js/store.js";
+import { served } from "../../../js/options.js";
 import { agentTitle, fieldTitle, gaitTitle, observationTitle, robotTitle, variedFields } from "../../../js/titles.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html } from "../../../js/components/elements.js";
+import { TableMenu } from "./report-tools.js";
 
 /** @import { ClaimView, Finding, NarrativeSection, PooledView, Setting } from "../../../js/types.js" */
 /** @import { Interval } from "../../../js/types.js" */
@@ -31,13 +32,13 @@ const POOLED_COLUMNS = [
 const MARKS = [{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }];
 const POOLED_VERDICTS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
 
-/** @param {{ known: Summary }} props */
-export function AtAGlance({ known }) {
-  const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
-  const points = useMemo(() => pooled.map((one) => pointsOf(known, one)), [known]);
+/** @param {{ summary: Summary }} props */
+export function AtAGlance({ summary }) {
+  const pooled = (summary.pooled ?? []).filter(({ relative }) => relative);
+  const points = useMemo(() => pooled.map((entry) => pointsOf(summary, entry)), [summary]);
   if (!pooled.length || (pooled.length === 1 && pooled[0].gaits.length === 1)) return null;
   const high = 1.03 * largest(points.flat(), 1);
-  const varied = variedFields(pooled, ["agent", "observation", "robot", ...known.parameters]);
+  const varied = variedFields(pooled, ["agent", "observation", "robot", ...summary.parameters]);
   const isRaced = pooled.some(({ relative_finished }) => relative_finished);
   const isOfSeveral = pooled.some(({ gaits }) => gaits.length > 1);
   const heading = isOfSeveral ? "All gaits together" : "All seeds together";
@@ -46,18 +47,22 @@ export function AtAGlance({ known }) {
   const columns = POOLED_COLUMNS.filter(({ title }) => !hidden.includes(title));
   return html`
     <section class="panel glance" aria-labelledby="glance">
-      <h2 id="glance">${heading}</h2>
+      <div class="report-tools">
+        <h2 id="glance">${heading}</h2>
+        <${TableMenu} title=${heading} />
+      </div>
       <p class="dim">Total distance as a share of greedy’s in the same place; a robot that gets half as far walks.</p>
       <div class="scroller" tabindex="0" role="region" aria-label=${`Table of ${heading.toLowerCase()}`}>
         <table class="facts-table stacking" role="table">
+          <caption class="sr-only">${heading}: share of greedy’s distance</caption>
           <thead role="rowgroup"><tr role="row">
             ${columns.map(({ title, words, kind }) => html`
               <th role="columnheader" scope="col" class=${kind} title=${words}>${title}</th>
             `)}
           </tr></thead>
           <tbody role="rowgroup">
-            ${pooled.map((one, n) => html`
-              <${PooledRow} key=${n} one=${one} varied=${varied} points=${points[n]} high=${high} isRaced=${isRaced}
+            ${pooled.map((entry, n) => html`
+              <${PooledRow} key=${n} entry=${entry} varied=${varied} points=${points[n]} high=${high} isRaced=${isRaced}
                 hasBest=${hasBest} />
             `)}
           </tbody>
@@ -83,29 +88,31 @@ function Share({ share }) {
 
 /**
  * @param {{
- *   one: PooledView, varied: string[], points: number[], high: number, isRaced: boolean, hasBest: boolean
+ *   entry: PooledView, varied: string[], points: number[], high: number, isRaced: boolean, hasBest: boolean
  * }} props
  */
-function PooledRow({ one, varied, points, high, isRaced, hasBest }) {
-  const { iqm } = /** @type {Interval} */ (one.relative);
+function PooledRow({ entry, varied, points, high, isRaced, hasBest }) {
+  const { iqm } = /** @type {Interval} */ (entry.relative);
   const label = `${points.length} seeds, typically ${percentage(iqm)} of greedy’s distance`;
   return html`
     <tr role="row">
-      <th role="rowheader" scope="row">${nameOf(one, varied)}</th>
+      <th role="rowheader" scope="row">${nameOf(entry, varied)}</th>
       <td role="cell" class="wide-cell" data-label=${SHARES}>
-        <${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${MARKS}
-          color=${agentOf(one.agent).color} height=${44} axis=${percentage} />
+        <${DotStrip} label=${label} points=${points} high=${high} typical=${entry.relative} marks=${MARKS}
+          color=${agentOf(entry.agent).color} height=${44} axis=${percentage} />
       </td>
       <td role="cell" data-label="Interquartile mean" class="num">
-        <${Share} share=${one.relative} />
+        <${Share} share=${entry.relative} />
       </td>
-      ${hasBest && html`<td role="cell" data-label=${OF_BEST} class="num"><${Share} share=${one.of_best_known} /></td>`}
-      <td role="cell" data-label="Share that walks" class="num"><${Share} share=${one.walkers} /></td>
-      <td role="cell" data-label="Reach greedy" class="num"><${Share} share=${one.reaches_greedy} /></td>
-      ${isRaced && html`
-        <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${one.beats_greedy} /></td>
+      ${hasBest && html`
+        <td role="cell" data-label=${OF_BEST} class="num"><${Share} share=${entry.of_best_known} /></td>
       `}
-      <td role="cell" data-label="Seeds" class="num">${whole(one.n)}</td>
+      <td role="cell" data-label="Share that walks" class="num"><${Share} share=${entry.walkers} /></td>
+      <td role="cell" data-label="Reach greedy" class="num"><${Share} share=${entry.reaches_greedy} /></td>
+      ${isRaced && html`
+        <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${entry.beats_greedy} /></td>
+      `}
+      <td role="cell" data-label="Seeds" class="num">${whole(entry.n)}</td>
     </tr>
   `;
 }
@@ -119,35 +126,35 @@ const NAMED_APART = ["agent", "observation", "robot", "steps"];
 
 /**
  * The fields in which a row differs from the others.
- * @param {PooledView} one
+ * @param {PooledView} entry
  * @param {string[]} varied
  */
-function nameOf(one, varied) {
+function nameOf(entry, varied) {
   /** @param {string} field */
   const differs = (field) => varied.includes(field);
   const agent = [
-    differs("agent") && agentTitle(one.agent),
-    one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`,
+    differs("agent") && agentTitle(entry.agent),
+    entry.blocks === 1 && differs("steps") && `${whole(entry.steps)} steps`,
   ];
-  const place = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
+  const place = [observationTitle(entry.observation), differs("robot") && robotTitle(entry.robot).toLowerCase()];
   const parameters = varied.filter((field) => !NAMED_APART.includes(field));
   if (parameters.length && !differs("observation")) place.shift();
-  const own = parameters.filter((field) => one[field] !== null)
-    .map((field) => `${fieldTitle(field)}\u00a0${one[field]}`);
-  return [...agent, ...place, ...own].filter(Boolean).join(", ");
+  const values = parameters.filter((field) => entry[field] !== null)
+    .map((field) => `${fieldTitle(field)}\u00a0${entry[field]}`);
+  return [...agent, ...place, ...values].filter(Boolean).join(", ");
 }
 
 /**
  * Every seed of the gaits that were pooled, as shares of greedy's distance.
- * @param {Summary} one
- * @param {PooledView} one
+ * @param {Summary} summary
+ * @param {PooledView} entry
  */
-function pointsOf({ settings, parameters }, one) {
+function pointsOf({ settings, parameters }, entry) {
   const greedy = greedyTotals(settings);
   /** @param {Setting} setting */
   const isPooled = (setting) =>
-    setting.role === "learner" && placeOf(setting) === placeOf(one) &&
-    ["agent", ...parameters].every((field) => setting[field] === one[field]);
+    setting.role === "learner" && placeOf(setting) === placeOf(entry) &&
+    ["agent", ...parameters].every((field) => setting[field] === entry[field]);
   return settings.filter(isPooled).flatMap((setting) => {
     const greedy_m = greedy(setting);
     return greedy_m ? (setting.total?.points_m ?? []).map((total_m) => total_m / greedy_m) : [];
@@ -159,30 +166,32 @@ function pointsOf({ settings, parameters }, one) {
 const VERSUS_VERDICTS = { yes: "better", no: "worse", "not established": "not established" };
 const VERSUS_COLUMNS = ["Place", "First", "Second", "Chance", "The first is"];
 
-/** @param {{ known: Summary }} props */
-export const Versus = ({ known }) => known.versus?.length > 0 && html`
+/** @param {{ summary: Summary }} props */
+export const Versus = ({ summary }) => summary.versus?.length > 0 && html`
   <section class="panel versus" aria-labelledby="versus">
     <h2 id="versus">Learners against each other</h2>
     <p class="dim">The chance that a seed of the first gets further than a seed of the second; a half is a tie.</p>
     <div class="scroller" tabindex="0" role="region" aria-label="Table of chances">
       <table class="facts-table">
+        <caption class="sr-only">Chance that a seed of the first gets further than a seed of the second</caption>
         <thead><tr>${VERSUS_COLUMNS.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
-        <tbody>${known.versus.map((one) => html`<${VersusRow} one=${one} />`)}</tbody>
+        <tbody>${summary.versus.map((pair) => html`<${VersusRow} pair=${pair} />`)}</tbody>
       </table>
     </div>
   </section>
 `;
 
-/** @param {{ one: VersusView }} props */
-function VersusRow({ one }) {
-  const place = [observationTitle(one.observation), robotTitle(one.robot).toLowerCase(), `${whole(one.steps)} steps`];
-  const interval = one.low === null || one.high === null ? "" : `${percentage(one.low)} – ${percentage(one.high)}`;
+/** @param {{ pair: VersusView }} props */
+function VersusRow({ pair }) {
+  const { observation, robot, steps, low, high, verdict } = pair;
+  const place = [observationTitle(observation), robotTitle(robot).toLowerCase(), `${whole(steps)} steps`];
+  const interval = low === null || high === null ? "" : `${percentage(low)} – ${percentage(high)}`;
   return html`
     <tr>
-      <th scope="row">${gaitTitle(one.gait)}, <span class="dim">${place.join(", ")}</span></th>
-      <td>${agentTitle(one.a)}</td><td>${agentTitle(one.b)}</td>
-      <td class="num">${percentage(one.probability)} <span class="dim">${interval}</span></td>
-      <td>${VERSUS_VERDICTS[one.verdict] ?? one.verdict}</td>
+      <th scope="row">${gaitTitle(pair.gait)}, <span class="dim">${place.join(", ")}</span></th>
+      <td>${agentTitle(pair.a)}</td><td>${agentTitle(pair.b)}</td>
+      <td class="num">${percentage(pair.probability)} <span class="dim">${interval}</span></td>
+      <td>${VERSUS_VERDICTS[verdict] ?? verdict}</td>
     </tr>
   `;
 }
@@ -206,7 +215,7 @@ export const Claims = ({ claims, isComplete }) => claims.length > 0 && html`
       that was tried. “Not established” means that the 95 % interval leaves it open.
     </p>
     ${!isComplete && html`<p class="dim">So far: a verdict may change until the last trial has ended.</p>`}
-    <ul>${claims.map((one) => html`<${Claim} key=${one.id} ...${one} />`)}</ul>
+    <ul>${claims.map((claim) => html`<${Claim} key=${claim.id} ...${claim} />`)}</ul>
   </section>
 `;
 
@@ -217,13 +226,13 @@ function Claim({ claim, criterion, verdict, evidence, where }) {
     <li class="claim">
       <${Verdict} verdict=${verdict} />
       <div>
-        <p><b>${claim}</b></p>
-        <p class="dim">${evidence}</p>
+        <h3>${withGroupedDigits(claim)}</h3>
+        <p class="dim">${withGroupedDigits(evidence)}</p>
         <details>
           <summary>${hasCases ? `All ${where.length} cases` : "Criterion"}</summary>
-          <p class="dim">Criterion: ${criterion}</p>
+          <p class="dim">Criterion: ${withGroupedDigits(criterion)}</p>
           ${hasCases && html`
-            <ul class="cases">${where.map((one) => html`<${Case} key=${one.label} ...${one} />`)}</ul>
+            <ul class="cases">${where.map((finding) => html`<${Case} key=${finding.label} ...${finding} />`)}</ul>
           `}
         </details>
       </div>
@@ -233,7 +242,10 @@ function Claim({ claim, criterion, verdict, evidence, where }) {
 
 /** @param {{ label: string, verdict: string, evidence: string }} props */
 const Case = ({ label, verdict, evidence }) => html`
-  <li><${Verdict} verdict=${verdict} /><p><b>${label}</b> <span class="dim">${evidence}</span></p></li>
+  <li>
+    <${Verdict} verdict=${verdict} />
+    <p><b>${label}</b> <span class="dim">${withGroupedDigits(evidence)}</span></p>
+  </li>
 `;
 
 /** @param {{ verdict: string }} props */
@@ -246,10 +258,11 @@ function Verdict({ verdict }) {
 
 /** @param {{ parts: NarrativeSection[] }} props */
 export const Narrative = ({ parts }) => parts.length > 0 && html`
-  <section class="panel narrative" aria-label="Findings">
+  <section class="panel narrative" aria-labelledby="conclusions">
+    <h2 id="conclusions">Findings</h2>
     ${parts.map(({ heading, text }) => html`
-      <h2>${heading}</h2>
-      ${text.split("\n\n").map((paragraph) => html`<p>${paragraph}</p>`)}
+      <h3>${heading}</h3>
+      ${text.split("\n\n").map((paragraph) => html`<p>${withGroupedDigits(paragraph)}</p>`)}
     `)}
   </section>
 `;
@@ -269,6 +282,7 @@ export function FairClocks({ timed }) {
       </p>
       <div class="scroller" tabindex="0" role="region" aria-label="Races under the real clock">
         <table class="facts-table">
+          <caption class="sr-only">Distance at time-out under the real clock</caption>
           <thead>
             <tr>
               <th scope="col">Place</th>

@@ -1,10 +1,13 @@
 // Tools over a report's figures: the choice of place and unit, and the legend of dot strips.
+import { useRef } from "preact/hooks";
 import { unit, UNITS } from "../distances.js";
 import { sentence } from "../../../js/format.js";
 import { agentOf } from "../../../js/settings.js";
-import { options, served } from "../../../js/store.js";
+import { options, served } from "../../../js/options.js";
 import { observationTitle, robotTitle } from "../../../js/titles.js";
 import { html, Segments } from "../../../js/components/elements.js";
+import { FileMenu } from "../../../js/components/file-menu.js";
+import { isPrinting } from "../printing.js";
 
 /** @import { Described, Place } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
@@ -12,9 +15,9 @@ import { html, Segments } from "../../../js/components/elements.js";
 // ---- the place: observation, robot and foot grid; hidden where there is only one
 
 /** @param {Place} place @param {Place[]} places */
-const titleOf = (place, places) => {
+export const placeTitle = (place, places) => {
   /** @param {keyof Place} field */
-  const differs = (field) => new Set(places.map((one) => one[field])).size > 1;
+  const differs = (field) => new Set(places.map((other) => other[field])).size > 1;
   const parts = [
     observationTitle(place.observation),
     differs("robot") && robotTitle(place.robot).toLowerCase(),
@@ -25,7 +28,7 @@ const titleOf = (place, places) => {
 };
 
 /** @param {Described[] | undefined} list @param {string} name */
-const descriptionOf = (list, name) => list?.find((one) => one.name === name)?.description ?? "";
+const descriptionOf = (list, name) => list?.find((entry) => entry.name === name)?.description ?? "";
 
 /** The observation and the robot of a place, explained. @param {{ place: Place }} props */
 export function PlaceWords({ place: { observation, robot } }) {
@@ -37,13 +40,37 @@ export function PlaceWords({ place: { observation, robot } }) {
 /** @param {{ places: Place[], value: number, onValue: (value: string) => unknown }} props */
 export function PlaceSwitch({ places, value, onValue }) {
   if (places.length < 2) return null;
-  const choices = places.map((one) => [one.key, titleOf(one, places)]);
+  const choices = places.map((place) => [place.key, placeTitle(place, places)]);
   return html`<${Segments} label="Place" choices=${choices} value=${value} onValue=${onValue} />`;
+}
+
+/** The title of a place on paper, which has no switch. @param {{ place: Place, places: Place[] }} props */
+export const PlaceTitle = ({ place, places }) =>
+  isPrinting.value && places.length > 1 && html`<h3 class="place-title">${placeTitle(place, places)}</h3>`;
+
+/**
+ * The menu of a table that has strips, which downloads it as a picture with the legend of its panel.
+ * @param {{ title: string }} props
+ */
+export function TableMenu({ title }) {
+  const menu = useRef(/** @type {HTMLElement | null} */ (null));
+  /** @param {import("../../../js/components/file-menu.js").FileKind} kind */
+  const save = async (kind) => {
+    const { saveTable } = await import("../../../js/components/table-files.js");
+    const panel = /** @type {HTMLElement} */ (menu.current?.closest(".panel"));
+    const table = /** @type {HTMLTableElement} */ (panel.querySelector("table"));
+    await saveTable(/** @type {"png" | "svg"} */ (kind), { table, legend: panel.querySelector(".strip-key"), title });
+  };
+  return html`
+    <div class="table-menu" ref=${menu}>
+      <${FileMenu} label=${`Download ${title}`} kinds=${["png", "svg"]} save=${save} />
+    </div>
+  `;
 }
 
 export const UnitSwitch = () => html`
   <${Segments} label="Unit of distances" choices=${UNITS} value=${unit.value}
-    onValue=${(/** @type {string} */ one) => (unit.value = one)} />
+    onValue=${(/** @type {string} */ name) => (unit.value = name)} />
 `;
 
 const TYPICAL = html`
@@ -76,7 +103,7 @@ export const StripKey = ({ signs = /** @type {SignName[]} */ (Object.keys(SIGNS)
  */
 export function BestKnownWords({ distances }) {
   const { best_known, best_known_where } = served().help;
-  const isEverywhere = distances.every((one) => typeof one === "number");
+  const isEverywhere = distances.every((distance) => typeof distance === "number");
   return html`<p class="dim table-note">${best_known} ${isEverywhere ? "" : best_known_where}</p>`;
 }
 

@@ -27,13 +27,13 @@ const MORE = "more-of-report";
 
 /** @param {{ run: Run }} props */
 export function Report({ run }) {
-  const known = summary.value;
+  const newest = summary.value;
   // Progress changes several times a second, the summary seldom.
   const findings = useMemo(() => html`
-    <${Findings} known=${known} onSeed=${showSeed}><${Seeds} known=${known} /><//>
-  `, [known]);
-  const hasSeeds = known?.settings?.some(({ n }) => n > 0);
-  const finding = findingIn(known);
+    <${Findings} summary=${newest} onSeed=${showSeed}><${Seeds} summary=${newest} /><//>
+  `, [newest]);
+  const hasSeeds = newest?.settings?.some(({ n }) => n > 0);
+  const finding = findingIn(newest);
   return html`
     <section class="report" aria-label=${`Experiment: ${runTitle(run)}`}>
       <${ReportHead} run=${run} />

@@ -14,16 +14,16 @@ import { Problem } from "../../../js/components/foot.js";
 
 /** A trial, and the run here that repeats it. @typedef {NonNullable<ReturnType<typeof seedsOf>>[number]} SeedRow */
 
-/** @param {{ known: Summary }} props */
-export function Seeds({ known }) {
-  const settings = repeatable(known);
+/** @param {{ summary: Summary }} props */
+export function Seeds({ summary }) {
+  const settings = repeatable(summary);
   if (settings.length === 0) return null;
   return html`
     <section class="panel seeds" id="seeds" aria-labelledby="seeds-title">
       <details open=${isOpen.value} onToggle=${(/** @type {Toggled} */ { target }) => (isOpen.value = target.open)}>
         <summary><h2 id="seeds-title">One seed, run here</h2></summary>
         ${isOpen.value && html`
-          <${Chosen} settings=${settings} parameters=${known.parameters} />
+          <${Chosen} settings=${settings} parameters=${summary.parameters} />
         `}
       </details>
     </section>
@@ -36,7 +36,7 @@ function Chosen({ settings, parameters }) {
   useEffect(() => followTrials(() => chosenRun.value), []);
   const { setting, distance_m } = chosen.value;
   const first = settings.find(({ role }) => role === "learner") ?? settings[0];
-  const { key } = settings.find((one) => one.key === setting) ?? first;
+  const { key } = settings.find((other) => other.key === setting) ?? first;
   const names = namesOf(settings, parameters);
   const seeds = run && seedsOf(run.id, key);
   const problem = run && problemOf(run.id);
@@ -52,8 +52,8 @@ function Chosen({ settings, parameters }) {
     <label class="choice">
       <span>Setting</span>
       <select onChange=${choose}>
-        ${settings.map((one) => html`
-          <option value=${one.key} selected=${one.key === key}>${names.get(one.key)}</option>
+        ${settings.map((option) => html`
+          <option value=${option.key} selected=${option.key === key}>${names.get(option.key)}</option>
         `)}
       </select>
     </label>
@@ -74,8 +74,8 @@ function Table({ experiment, seeds, distance_m }) {
       <table class="facts-table">
         <thead><tr><th scope="col">Seed</th><th scope="col">Distance</th><th scope="col">Run</th></tr></thead>
         <tbody>
-          ${seeds.map((one) => html`
-            <${Seed} key=${one.key} experiment=${experiment} seed=${one} isChosen=${one.distance_m === distance_m} />
+          ${seeds.map((seed) => html`
+            <${Seed} key=${seed.key} experiment=${experiment} seed=${seed} isChosen=${seed.distance_m === distance_m} />
           `)}
         </tbody>
       </table>

@@ -4,11 +4,12 @@ import { bare, factorOf, greedyTotals, inUnit, shown } from "../distances.js";
 import { count, percentage } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
-import { served } from "../../../js/store.js";
+import { served } from "../../../js/options.js";
 import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../../js/titles.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Segments } from "../../../js/components/elements.js";
-import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
+import { isPrinting } from "../printing.js";
+import { BestKnownWords, StripKey, TableMenu, UnitSwitch } from "./report-tools.js";
 
 /** @import { OnSeed } from "./all-findings.js" */
 /** @import { Setting, Summary } from "../../../js/types.js" */
@@ -16,15 +17,16 @@ import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Farthest first"]];
 const MAX_ROWS = 60;
 /** @typedef {ReturnType<typeof measured>} Measured */
+const TITLE = "Every setting, with every seed";
 const STRIP_TITLE = "Total distance in 50 steps, a dot for each seed";
 
-/** @param {{ known: Summary, onSeed: OnSeed | null }} props */
-export function SweepTable({ known, onSeed }) {
+/** @param {{ summary: Summary, onSeed: OnSeed | null }} props */
+export function SweepTable({ summary, onSeed }) {
   const [order, setOrder] = useState("grid");
   const [isWhole, setWhole] = useState(false);
-  const greedy = greedyTotals(known.settings);
-  const rows = shownSettings(known.settings).map((setting) => measured(setting, greedy(setting)));
-  const columns = columnsOf(rows, known.parameters);
+  const greedy = greedyTotals(summary.settings);
+  const rows = shownSettings(summary.settings).map((setting) => measured(setting, greedy(setting)));
+  const columns = columnsOf(rows, summary.parameters);
   const sorted = order === "best" ? [...rows].sort(byDistance) : rows;
   const hasBest = rows.some(({ best }) => best !== null);
   const high = 1.03 * largest(rows.flatMap(({ points, line, best }) => [line ?? 0, best ?? 0, ...points]), 1e-9);
@@ -33,23 +35,25 @@ export function SweepTable({ known, onSeed }) {
   return html`
     <section class="panel sweep-table" aria-labelledby="sweep-table">
       <div class="report-tools">
-        <h2 id="sweep-table">Every setting, with every seed</h2>
+        <h2 id="sweep-table">${TITLE}</h2>
         <${Segments} label="Order" choices=${ORDERS} value=${order} onValue=${setOrder} />
         <${UnitSwitch} />
+        <${TableMenu} title=${TITLE} />
       </div>
       <${StripKey} signs=${["seed", "typical", "greedy", ...(hasBest ? ["best-known"] : [])]} color=${color} />
       <div class="scroller" tabindex="0" role="region" aria-label="Every setting">
         <table class="facts-table stacking" role="table">
+          <caption class="sr-only">${TITLE}</caption>
           <${Head} columns=${columns} hasBest=${hasBest} />
           <tbody role="rowgroup">
-            ${(isWhole ? sorted : sorted.slice(0, MAX_ROWS)).map((row) => html`
+            ${(isWhole || isPrinting.value ? sorted : sorted.slice(0, MAX_ROWS)).map((row) => html`
               <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} hasBest=${hasBest}
                 onSeed=${onSeed} />
             `)}
           </tbody>
         </table>
       </div>
-      ${!isWhole && sorted.length > MAX_ROWS && html`
+      ${!isWhole && !isPrinting.value && sorted.length > MAX_ROWS && html`
         <div class="older">
           <button class="secondary" onClick=${() => setWhole(true)}>Show all ${count(sorted.length, "setting")}</button>
         </div>
@@ -75,8 +79,8 @@ function columnsOf(rows, parameters) {
 
 /** Without greedy, which is a line in every row, unless there is nothing else. @param {Setting[]} settings */
 function shownSettings(settings) {
-  const found = settings.filter(({ role, agent }) => role === "learner" || agent !== "greedy");
-  return found.length ? found : settings;
+  const compared = settings.filter(({ role, agent }) => role === "learner" || agent !== "greedy");
+  return compared.length ? compared : settings;
 }
 
 /**
@@ -88,14 +92,14 @@ function measured(setting, greedy_m) {
   const factor = factorOf({ ...setting, greedy_m });
   const total = factor === null ? null : setting.total;
   /** @param {number | null | undefined} metres */
-  const own = (metres) => inUnit(metres, factor);
+  const converted = (metres) => inUnit(metres, factor);
   const ofSeed = (/** @type {number} */ metres) => metres * (factor ?? NaN);
   return {
     setting,
     points: (total?.points_m ?? []).map(ofSeed),
-    typical: total && { iqm: ofSeed(total.iqm_m), low: own(total.low_m), high: own(total.high_m) },
-    line: own(greedy_m),
-    best: own(setting.best_known_m),
+    typical: total && { iqm: ofSeed(total.iqm_m), low: converted(total.low_m), high: converted(total.high_m) },
+    line: converted(greedy_m),
+    best: converted(setting.best_known_m),
   };
 }
 
@@ -144,8 +148,8 @@ function Row({ row, columns, high, hasBest, onSeed }) {
 
 /** @param {{ row: Measured, high: number, onSeed: OnSeed | null }} props */
 function Strip({ row: { setting, points, typical, line, best }, high, onSeed }) {
-  const known = best === null ? "" : `, best known ${shown(best)}`;
-  const label = `${count(points.length, "seed")}, typically ${shown(typical?.iqm)}, greedy ${shown(line)}${known}`;
+  const bestKnown = best === null ? "" : `, best known ${shown(best)}`;
+  const label = `${count(points.length, "seed")}, typically ${shown(typical?.iqm)}, greedy ${shown(line)}${bestKnown}`;
   const marks = [{ value: line, kind: "greedy" }, { value: best, kind: "best-known" }]
     .filter(({ value }) => value !== null);
   return html`

@@ -7,7 +7,11 @@ import { agentOf } from "../../../js/settings.js";
 import { gaitTitle } from "../../../js/titles.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html } from "../../../js/components/elements.js";
-import { BestKnownWords, PlaceSwitch, PlaceWords, StripKey, UnitSwitch } from "./report-tools.js";
+import { experimentKind } from "../kinds.js";
+import { drawn } from "../printing.js";
+import {
+  BestKnownWords, PlaceSwitch, PlaceTitle, placeTitle, PlaceWords, StripKey, TableMenu, UnitSwitch,
+} from "./report-tools.js";
 
 /** @import { OnSeed } from "./all-findings.js" */
 /** @import { Distances, Place, Setting, Summary } from "../../../js/types.js" */
@@ -25,34 +29,48 @@ const DISTANCES = [
  */
 const REFERENCES = ["greedy", "two-step"];
 
-/** @param {{ known: Summary, onSeed: OnSeed | null }} props */
-export function TableOne({ known, onSeed }) {
-  const places = placesOf(known.settings);
+/** @param {{ summary: Summary, onSeed: OnSeed | null }} props */
+export function TableOne({ summary, onSeed }) {
+  const places = placesOf(summary.settings);
   const [chosen, setChosen] = useState(/** @type {string | null} */ (null));
   const place = places.find(({ key }) => key === chosen) ?? places[0];
-  const gaits = gaitsOf(known.settings, place.key);
-  const high = highest(gaits, place);
+  const gaits = gaitsOf(summary.settings, place.key);
   return html`
     <section class="panel table-one" aria-labelledby="table-one">
       <div class="report-tools">
         <h2 id="table-one">Table 1, with every seed</h2>
         <${PlaceSwitch} places=${places} value=${place.key} onValue=${setChosen} />
         <${UnitSwitch} />
+        <${TableMenu} title=${`Table 1, with every seed: ${placeTitle(place, places)}`} />
       </div>
-      <${PlaceWords} place=${place} />
       <${StripKey} color=${agentOf(gaits[0].learners[0]?.agent).color} />
-      <table role="table">
-        <caption class="sr-only">
-          Distance at time-out and total distance of each gait and agent, beside the paper’s
-        </caption>
-        <${Head} learners=${gaits[0].learners} />
-        ${gaits.map((one) => html`
-          <${Gait} key=${one.gait} gait=${one} place=${place} high=${high} onSeed=${onSeed} />
-        `)}
-      </table>
+      ${drawn(places, place).map((each) => html`
+        <${InPlace} key=${each.key} summary=${summary} place=${each} places=${places} onSeed=${onSeed} />
+      `)}
       <p class="dim table-note">${NOTES[unit.value]} ${PAPERS}</p>
       <${BestKnownWords} distances=${gaits.map(bestKnownOf)} />
     </section>
+  `;
+}
+
+/** @param {{ summary: Summary, place: Place, places: Place[], onSeed: OnSeed | null }} props */
+function InPlace({ summary, place, places, onSeed }) {
+  const gaits = gaitsOf(summary.settings, place.key);
+  const papers = experimentKind(summary.experiment)?.paper_gaits ?? {};
+  const high = highest(gaits, place);
+  return html`
+    <${PlaceTitle} place=${place} places=${places} />
+    <${PlaceWords} place=${place} />
+    <table role="table">
+      <caption class="sr-only">
+        Distance at time-out and total distance of each gait and agent, beside the paper’s
+      </caption>
+      <${Head} learners=${gaits[0].learners} />
+      ${gaits.map((settings) => html`
+        <${Gait} key=${settings.gait} settings=${settings} paper=${papers[settings.gait]} place=${place} high=${high}
+          onSeed=${onSeed} />
+      `)}
+    </table>
   `;
 }
 
@@ -71,7 +89,7 @@ const Head = ({ learners }) => html`
   </thead>
 `;
 
-/** Of a gait in a place [m]. @param {GaitSettings} one */
+/** Of a gait in a place [m]. @param {GaitSettings} settings */
 const bestKnownOf = ({ learners, references }) => (learners[0] ?? references.greedy)?.best_known_m ?? null;
 
 /**
@@ -84,21 +102,26 @@ const factorsOf = (greedy, place) => ({
   paper: factorOf({ ...place, greedy_m: greedy?.published?.total_m ?? null }),
 });
 
-/** @param {{ gait: GaitSettings, place: Place, high: number, onSeed: OnSeed | null }} props */
-function Gait({ gait: found, place, high, onSeed }) {
-  const { gait, learners, references } = found;
+/**
+ * `paper`: the paper's name of the gait.
+ * @param {{ settings: GaitSettings, paper?: string, place: Place, high: number, onSeed: OnSeed | null }} props
+ */
+function Gait({ settings, paper, place, high, onSeed }) {
+  const { gait, learners, references } = settings;
   const factors = factorsOf(references.greedy, place);
-  const measure = { ...factors, high, best: inUnit(bestKnownOf(found), factors.ours) };
+  const measure = { ...factors, high, best: inUnit(bestKnownOf(settings), factors.ours) };
   return html`
     <tbody role="rowgroup">
       ${DISTANCES.map(([distance, title, words], n) => html`
         <tr role="row">
           ${n === 0 && html`
-            <th role="rowheader" class="gait-name" scope="rowgroup" rowspan="2">${gaitTitle(gait)}</th>
+            <th role="rowheader" class="gait-name" scope="rowgroup" rowspan="2">
+              ${gaitTitle(gait)}${paper && html` <span class="dim">(${paper})</span>`}
+            </th>
           `}
           <th role="rowheader" scope="row" class="distance" title=${words}>${title}</th>
-          ${learners.map((one) => html`
-            <${LearnerCell} key=${one.key} setting=${one} distance=${distance} greedy=${references.greedy}
+          ${learners.map((setting) => html`
+            <${LearnerCell} key=${setting.key} setting=${setting} distance=${distance} greedy=${references.greedy}
               measure=${measure} onSeed=${onSeed} />
           `)}
           ${REFERENCES.map((agent) => html`
@@ -130,12 +153,12 @@ function highest(gaits, place) {
   const ends = gaits.flatMap((gait) => {
     const { learners, references: { greedy } } = gait;
     const { ours, paper } = factorsOf(greedy, place);
-    const walked = [greedy, ...learners].flatMap((one) => one?.total?.points_m ?? []);
-    const printed = [greedy, ...learners].map((one) => one?.published?.total_m);
+    const walked = [greedy, ...learners].flatMap((setting) => setting?.total?.points_m ?? []);
+    const printed = [greedy, ...learners].map((setting) => setting?.published?.total_m);
     return [...walked, bestKnownOf(gait)].map((far) => inUnit(far, ours))
       .concat(printed.map((far) => inUnit(far, paper)));
   });
-  return 1.03 * largest(ends.filter((one) => one !== null), 1e-9);
+  return 1.03 * largest(ends.filter((end) => end !== null), 1e-9);
 }
 
 const TIME_OUT = "At time-out: under the paper clock, when the first lane has used its steps.";
@@ -183,13 +206,13 @@ const EmptyCell = ({ label }) => html`
 
 /**
  * The distances of a cell in the chosen unit.
- * @param {{ setting: Setting, distance: Distance, greedy: Setting | null, measure: Measure }} one
+ * @param {{ setting: Setting, distance: Distance, greedy: Setting | null, measure: Measure }} cell
  */
 function inUnits({ setting, distance, greedy, measure }) {
   const ours = /** @type {Distances} */ (setting[distance]);
   /** @param {number | null | undefined} metres */
-  const own = (metres) => inUnit(metres, measure.ours);
-  const line = own(greedy?.[distance]?.mean_m ?? null);
+  const converted = (metres) => inUnit(metres, measure.ours);
+  const line = converted(greedy?.[distance]?.mean_m ?? null);
   const printed = inUnit(setting.published?.[`${distance}_m`] ?? null, measure.paper);
   const best = bestOf(distance, measure);
   const marks = [
@@ -201,17 +224,17 @@ function inUnits({ setting, distance, greedy, measure }) {
     printed,
     marks: marks.filter(({ value }) => value !== null),
     points: ours.points_m.map((metres) => metres * (measure.ours ?? NaN)),
-    typical: { iqm: own(ours.iqm_m), low: own(ours.low_m), high: own(ours.high_m) },
+    typical: { iqm: converted(ours.iqm_m), low: converted(ours.low_m), high: converted(ours.high_m) },
   };
 }
 
-/** @param {{ low: number | null, high: number | null }} one */
+/** @param {{ low: number | null, high: number | null }} typical */
 const intervalOf = ({ low, high }) => (low === null ? "" : `${bare(low)} – ${bare(high)}`);
 
-/** @param {ReturnType<typeof inUnits>} one */
+/** @param {ReturnType<typeof inUnits>} shares */
 function captionOf({ points, typical, line, best, printed }) {
   const interval = intervalOf(typical);
-  const lowest = -largest(points.map((one) => -one), -Infinity);
+  const lowest = -largest(points.map((point) => -point), -Infinity);
   return [
     `${count(points.length, "seed")} from ${shown(lowest)} to ${shown(largest(points, -Infinity))}`,
     `typically ${shown(typical.iqm)}${interval && `, 95 % interval ${interval}`}`,

@@ -3,7 +3,8 @@ import { compared, comparable, followCompared, leaveOut, leftOut, MAX_COMPARED }
 import { count } from "../../format.js";
 import { commonFacts } from "../../run-words.js";
 import { isActive } from "../../selectors.js";
-import { html, Slot } from "../elements.js";
+import { html } from "../elements.js";
+import { Slot } from "../parts.js";
 import { ReplayLink } from "../replay-link.js";
 import { Curves } from "./curves.js";
 import { Key } from "./key.js";

@@ -7,7 +7,8 @@ import {
 } from "../../run-list.js";
 import { clearSelection, selectAll, selected, setSelected } from "../../run-selection.js";
 import { connection } from "../../store.js";
-import { html, Slot } from "../elements.js";
+import { html } from "../elements.js";
+import { Slot } from "../parts.js";
 import { RunRow } from "./row.js";
 
 /** @import { Group } from "../../run-groups.js" */

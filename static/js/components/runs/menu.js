@@ -5,7 +5,8 @@ import { fillersOf, kindOf, rowsOfRuns, runRow } from "../../features.js";
 import { downloads } from "../../files.js";
 import { addressOf } from "../../page-state.js";
 import { isActive, isOperator, isWalk, mayChange, mayStart } from "../../selectors.js";
-import { html, Slot } from "../elements.js";
+import { html } from "../elements.js";
+import { Slot } from "../parts.js";
 import { edit } from "./annotations.js";
 
 /** @import { AnyRun } from "../../runs.js" */

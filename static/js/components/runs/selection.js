@@ -6,7 +6,8 @@ import { openDetails } from "../../run-details.js";
 import { clearSelection, deletable, deleteSelected, selected, tagSelected } from "../../run-selection.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
-import { html, Slot } from "../elements.js";
+import { html } from "../elements.js";
+import { Slot } from "../parts.js";
 import { Problem } from "../foot.js";
 
 /** @import { Changed } from "../../types.js" */

@@ -8,7 +8,8 @@ import { commonFacts, fieldsOfAll, namesAmong, resultInWords, shareOf } from "..
 import { distanceOf } from "../../runs.js";
 import { isWalk } from "../../selectors.js";
 import { curveOf } from "../../training.js";
-import { html, Slot } from "../elements.js";
+import { html } from "../elements.js";
+import { Slot } from "../parts.js";
 import { CurvesChart } from "../compare/curves.js";
 import { RaceThem } from "../compare/race-them.js";
 import { SelectionActions } from "./selection.js";
