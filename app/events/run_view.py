@@ -18,7 +18,7 @@ from app.storage.run import (
 )
 from app.storage.run_kind import added_kind, run_kinds
 from app.storage.run_names import is_named
-from hexapods.domain.disturbance_documents import SENT
+from hexapods.domain.disturbance_documents import DISTURBANCE_SCHEMA
 from hexapods.domain.records import JsonForm, to_json
 from hexapods.domain.settings import Value
 from hexapods.runs.best_known import best_known_in_race_m
@@ -44,7 +44,7 @@ NewPace = Annotated[float | Literal["max"] | None, Field(exclude_if=lambda pace:
 NewSettings = Annotated[Settings, Field(exclude_if=lambda settings: not settings)]
 _KindName = Annotated[str, JsonForm(str, str, lambda: {"enum": [*run_kinds()], "type": "string"})]
 _NewDisturbance = Annotated[
-    Annotated[Mapping[str, Any], JsonForm(dict, dict, SENT)] | None,
+    Annotated[Mapping[str, Any], JsonForm(dict, dict, DISTURBANCE_SCHEMA)] | None,
     Field(exclude_if=lambda disturbance: disturbance is None),
 ]
 

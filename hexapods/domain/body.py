@@ -23,7 +23,7 @@ _OPTIONAL = ("torso_length_m", "torso_width_m")
 class LegMount:
     """A leg: where its coxa joint is on the torso, and what differs from the robot's other legs.
 
-    Its place is in polar coordinates of the body frame. What is None is as the robot says.
+    Its place is in polar coordinates of the body frame. A field that is None has the robot's value.
     """
 
     __repr__ = short_repr
@@ -63,7 +63,7 @@ class ServoStrength(NamedTuple):
     kv: float
     """Velocity gain [N·m·s/rad]."""
     torque_nm: float
-    """Its largest torque."""
+    """Largest torque by magnitude."""
 
 
 def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
@@ -90,11 +90,11 @@ def _check_count(legs: int) -> None:
 class Robot:
     """Parameters of a robot. Lengths in m, masses in kg, times in s.
 
-    The defaults are the `stiff` hexapod. Dimensions, masses and servos are those of all legs that
-    do not have their own. The torso is a cylinder, or a box if it has a length and a width.
+    The defaults are the `stiff` hexapod. Dimensions, masses and servos are those of all legs whose
+    mount does not override them. The torso is a cylinder, or a box if it has a length and a width.
 
-    Robots are equal if they are built alike, whatever they are called. One with an id is pickled
-    with the document of this id, so that the process that reads it knows that too.
+    Robots are equal if they are built alike, whatever their names. A stored robot is pickled with
+    its document, so that the process that unpickles it needs no library.
 
     Raises:
         InvalidInput: if a value is out of range.
@@ -105,7 +105,7 @@ class Robot:
     name: str = field(default="stiff", compare=False)
     """Name of the preset or stored robot; with the suffix `(modified)` if fields differ from it.
 
-    Any other is one's own: it is not saved with what was computed.
+    Any other name is not saved with results.
     """
     legs: tuple[LegMount, ...] = ring(6)
     torso_radius_m: float = 0.10
@@ -145,8 +145,7 @@ class Robot:
     dt_s: float = 0.004
     """Time step of the physics; with 0.008 s results begin to drift."""
     id: str | None = field(default=None, compare=False, kw_only=True)
-    """Of the stored robot that it is, or from which its fields differ; None for a preset."""
-
+    """Id of the stored robot, also where fields differ from it; None for a preset."""
     document: RobotDocument | None = field(default=None, compare=False, repr=False, kw_only=True)
     """The document of the stored robot with this id; None for a preset."""
 
@@ -162,7 +161,7 @@ class Robot:
                 raise InvalidInput(f"robot.{name} must be a number, not {value!r}")
             if not (math.isfinite(value) and value > 0):
                 raise InvalidInput(f"robot.{name} must be positive and finite, not {value}")
-        legs: Any = self.legs  # as a user gave them
+        legs: Any = self.legs  # not validated
         if not isinstance(legs, tuple) or not all(isinstance(leg, LegMount) for leg in legs):
             raise InvalidInput(f"robot.legs must be a tuple of LegMount, not {legs!r}")
         _check_count(len(self.legs))
@@ -205,10 +204,10 @@ class Robot:
         return (self.foot_radius_m,) * len(self.legs)
 
     def of_legs(self, name: str) -> tuple[float, ...]:
-        """Return a number that legs may have their own of, such as `coxa_m`, leg by leg."""
-        usual = getattr(self, name)
-        values = (getattr(leg, name) for leg in self.legs)
-        return tuple(usual if value is None else value for value in values)
+        """Return each leg's value of a field that a mount may override, such as `coxa_m`."""
+        default = getattr(self, name)
+        overrides = (getattr(leg, name) for leg in self.legs)
+        return tuple(default if value is None else value for value in overrides)
 
     @property
     def feet_out_m(self) -> tuple[float, ...]:
@@ -223,11 +222,11 @@ class Robot:
         """Place (x, y) of each foot at home in the body frame."""
         homes = []
         for leg, out_m in zip(self.legs, self.feet_out_m, strict=True):
-            at, to = math.radians(leg.azimuth_deg), math.radians(leg.direction_deg)
+            azimuth, yaw = math.radians(leg.azimuth_deg), math.radians(leg.direction_deg)
             homes.append(
                 (
-                    leg.radius_m * math.cos(at) + out_m * math.cos(to),
-                    leg.radius_m * math.sin(at) + out_m * math.sin(to),
+                    leg.radius_m * math.cos(azimuth) + out_m * math.cos(yaw),
+                    leg.radius_m * math.sin(azimuth) + out_m * math.sin(yaw),
                 )
             )
         return homes

@@ -19,20 +19,20 @@ from hexapods.domain.model_geometry import Chain
 from hexapods.domain.types import FloatArray
 
 _ROUNDS = 14
-"""Of the inverse kinematics, at most; within reach two or three suffice."""
+"""Most rounds of the inverse kinematics; within reach two or three suffice."""
 EXACT, NEAR = 3e-6, 6e-3
 """Errors, relative to the length of the leg, from which one more round suffices: it leaves the
 square of them. The joint targets of a step need less, since they are interpolated."""
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 """Indices of the other two of three axes."""
 _DAMPING = 0.1
-"""Relative to the square of the error [rad²]."""
+"""Damping, relative to the square of the error [rad²]."""
 _LEAST_DAMPING = 1e-12
-"""Relative to the square of the leg's length."""
+"""Least damping, relative to the square of the leg's length."""
 _FLAT = 0.03
 """Ratio of the least to the largest singular value below which a foot moves in a surface only."""
-_HEIGHT_COUNTS = 8.0
-"""How much more the height counts than the place, of a foot that moves in a surface."""
+_HEIGHT_WEIGHT = 8.0
+"""Weight of an error in height against one sideways, of a foot that moves in a surface."""
 _HEIGHT_ERROR = 0.02
 """Largest error of such a foot's height, relative to the length of its leg."""
 _RESTS = 1 / 30
@@ -41,7 +41,7 @@ _FITTED_BOX = np.array([(-0.2, 0.2), (-0.2, 0.2), (-0.05, 0.2)])
 """Where the first angles are fitted, relative to the distance of the foot from the first joint."""
 _FITTED_PER_AXIS = 9
 _MONOMIALS = 19
-"""Of three numbers, of degrees 1 to 3."""
+"""Number of monomials of three variables, of degrees 1 to 3."""
 
 
 class FootParameters(NamedTuple):
@@ -62,7 +62,7 @@ class _Rows(NamedTuple):
     to_first: slice
     """Rotation of the body frame to that of the first joint, (3, 3)."""
     stages: slice
-    """Of each joint the rotation of the next joint's frame to its own, and the place of the next
+    """For each joint the rotation of the next joint's frame to its own, and the place of the next
     joint's origin, or of the foot, (3, 4, joints)."""
     expansion: slice
     """Coefficients of `_monomials` that give the first angles, (7, joints, 3)."""
@@ -81,18 +81,18 @@ class ChainSolver:
     """Forward and inverse kinematics of the chains of a robot's legs, by angles from one pose.
 
     Attributes:
-        most: the number of joints of the longest chain; shorter ones have more joints that do
-            nothing.
-        parameters: what `solve` needs of each leg, (rows, legs).
-        follows_grid: of each leg whether its foot can go to any place near where it is.
+        max_joints: number of joints of the longest chain; shorter ones are padded with joints
+            that do nothing.
+        parameters: parameters of each leg for `solve`, (rows, legs).
+        follows_grid: for each leg whether its foot can go to any place near where it is.
     """
 
     def __init__(self, chains: Sequence[Chain]) -> None:
-        self.most = most = max(len(chain.axes) for chain in chains)
-        sizes = 9, 12 * most, 21 * most, 3, 1, 9, 1
+        self.max_joints = max_joints = max(len(chain.axes) for chain in chains)
+        sizes = 9, 12 * max_joints, 21 * max_joints, 3, 1, 9, 1
         ends = np.cumsum((0, *sizes)).tolist()
         self._rows = _Rows(*(slice(start, end) for start, end in pairwise(ends)))
-        columns = [_parameters(chain, most) for chain in chains]
+        columns = [_parameters(chain, max_joints) for chain in chains]
         self.parameters = np.array(columns).T
         self.follows_grid = tuple(bool(column[-1] == 0) for column in columns)
         self._is_any_flat = not all(self.follows_grid)
@@ -122,7 +122,7 @@ class ChainSolver:
         terms = np.moveaxis(terms, -1, 0).reshape(-1, 21)[:, :_MONOMIALS]
         fitted, *_ = np.linalg.lstsq(terms, angles[is_reached], rcond=None)
         degrees = np.repeat((1, 2, 2, 3, 3, 3, 3), 3)[:_MONOMIALS]
-        coefficients = np.zeros((21, self.most))
+        coefficients = np.zeros((21, self.max_joints))
         coefficients[:_MONOMIALS] = fitted / size ** degrees[:, None]
         return np.moveaxis(coefficients.reshape(7, 3, -1), 1, 2).ravel()
 
@@ -130,7 +130,7 @@ class ChainSolver:
         """Return the centres of the feet in the body frame, (3, k, legs).
 
         Args:
-            turned: angles of the joints from the standing pose, (most, k, legs).
+            turned: angles of the joints from the standing pose, (max_joints, k, legs).
         """
         parameters = self.parameters[:, None]
         vectors = self._vectors(turned, self._stages(parameters))
@@ -142,13 +142,13 @@ class ChainSolver:
         return feet
 
     def parameters_of(self, columns: FloatArray) -> FootParameters:
-        """Return what `solve` needs of feet, from the columns of their legs, (rows, ...)."""
+        """Return the parameters of feet for `solve`, from their legs' columns, (rows, ...)."""
         rows, each = self._rows, columns.shape[1:]
         length = columns[rows.length][0]
         return FootParameters(
             columns[rows.to_first].reshape(3, 3, *each),
             self._stages(columns),
-            columns[rows.expansion].reshape(7, self.most, 3, *each),
+            columns[rows.expansion].reshape(7, self.max_joints, 3, *each),
             columns[rows.foot],
             length * length,
             columns[rows.weights].reshape(3, 3, *each),
@@ -159,12 +159,12 @@ class ChainSolver:
         """Return the angles of joints that move feet from where they stand.
 
         Args:
-            offsets: of the feet in the body frame, (3, ...) [m].
+            offsets: displacements of the feet in the body frame, (3, ...) [m].
             feet: their parameters.
             near: error from which one more round suffices, relative to the length of the leg.
 
         Returns:
-            Angles from the standing pose, (..., most) [rad]; NaN where a foot is out of reach.
+            Angles from the standing pose, (..., max_joints) [rad]; NaN where out of reach.
         """
         moved = _product(feet.to_first, offsets)
         target = feet.foot + moved
@@ -212,29 +212,29 @@ class ChainSolver:
         return reached
 
     def _stages(self, parameters: FloatArray) -> FloatArray:
-        return parameters[self._rows.stages].reshape(3, 4, self.most, *parameters.shape[1:])
+        return parameters[self._rows.stages].reshape(3, 4, self.max_joints, *parameters.shape[1:])
 
     def _vectors(self, turned: FloatArray, stages: FloatArray) -> FloatArray:
         """Return how each joint moves the foot, and where that is, in the first joint's frame.
 
         Args:
-            turned: angles of the joints, (most, ...).
-            stages: (3, 4, most, ...).
+            turned: angles of the joints, (max_joints, ...).
+            stages: (3, 4, max_joints, ...).
 
         Returns:
-            (3, most + 1, ...); the last is the foot.
+            (3, max_joints + 1, ...); the last is the foot.
         """
-        cos, sin, most = np.cos(turned), np.sin(turned), self.most
-        # Of each joint: from the next one's frame to its own, then turned about its z axis.
+        cos, sin, max_joints = np.cos(turned), np.sin(turned), self.max_joints
+        # For each joint: from the next joint's frame to its own, then turned about its z axis.
         turns = np.empty((3, 4, *turned.shape))
         turns[0] = cos * stages[0] - sin * stages[1]
         turns[1] = sin * stages[0] + cos * stages[1]
         turns[2] = stages[2]
-        vectors = np.empty((3, most + 1, *turned.shape[1:]))
-        for joint in reversed(range(most)):
+        vectors = np.empty((3, max_joints + 1, *turned.shape[1:]))
+        for joint in reversed(range(max_joints)):
             turn = turns[:, :, joint]
-            if joint == most - 1:
-                vectors[:, most] = turn[:, 3]
+            if joint == max_joints - 1:
+                vectors[:, max_joints] = turn[:, 3]
             else:
                 outer = vectors[:, joint + 1 :]
                 outer[...] = (
@@ -243,8 +243,8 @@ class ChainSolver:
                     + turn[:, 2, None] * outer[2]
                 )
                 outer[:, -1] += turn[:, 3]
-            np.negative(vectors[1, most], out=vectors[0, joint])
-            vectors[1, joint], vectors[2, joint] = vectors[0, most], 0.0
+            np.negative(vectors[1, max_joints], out=vectors[0, joint])
+            vectors[1, joint], vectors[2, joint] = vectors[0, max_joints], 0.0
         return vectors
 
 
@@ -257,10 +257,10 @@ def _product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
 
 
 def _expanded(expansion: FloatArray, moved: FloatArray) -> FloatArray:
-    """Return angles by polynomials of an offset, (most, ...).
+    """Return angles by polynomials of an offset, (max_joints, ...).
 
     Args:
-        expansion: coefficients, (7, most, 3, ...).
+        expansion: coefficients, (7, max_joints, 3, ...).
         moved: the offset in the frame of the first joint, (3, ...).
     """
     terms = expansion * _monomials(moved)[:, None]
@@ -289,40 +289,43 @@ def _monomials(moved: FloatArray) -> FloatArray:
 
 
 def _damped_step(columns: FloatArray, error: FloatArray, damping: FloatArray) -> FloatArray:
-    """Return Jᵀ (J Jᵀ + damping)⁻¹ error, (most, n), by the cofactors of the symmetric matrix.
+    """Return Jᵀ (J Jᵀ + damping)⁻¹ error, (max_joints, n), by cofactors of the symmetric matrix.
 
     Args:
-        columns: J, (3, most, n).
+        columns: J, (3, max_joints, n).
         error: (3, n).
         damping: (n,).
     """
     diagonals, off_diagonals = columns * columns, columns * columns.take(_NEXT, 0)
-    diagonal, other = diagonals[:, 0] + damping, off_diagonals[:, 0]  # xx yy zz; xy yz zx
+    diagonal, off_diagonal = diagonals[:, 0] + damping, off_diagonals[:, 0]  # xx yy zz; xy yz zx
     for joint in range(1, columns.shape[1]):
-        diagonal, other = diagonal + diagonals[:, joint], other + off_diagonals[:, joint]
+        diagonal = diagonal + diagonals[:, joint]
+        off_diagonal = off_diagonal + off_diagonals[:, joint]
     next_diagonal, last_diagonal = diagonal.take(_NEXT, 0), diagonal.take(_LAST, 0)
-    next_other, last_other = other.take(_NEXT, 0), other.take(_LAST, 0)
-    cofactors = next_diagonal * last_diagonal - next_other * next_other
-    mixed = next_other * last_other - other * last_diagonal
-    determinant = diagonal[0] * cofactors[0] + other[0] * mixed[0] + other[2] * mixed[2]
+    next_off, last_off = off_diagonal.take(_NEXT, 0), off_diagonal.take(_LAST, 0)
+    cofactors = next_diagonal * last_diagonal - next_off * next_off
+    mixed = next_off * last_off - off_diagonal * last_diagonal
+    determinant = (
+        diagonal[0] * cofactors[0] + off_diagonal[0] * mixed[0] + off_diagonal[2] * mixed[2]
+    )
     solved = (
         cofactors * error
         + mixed * error.take(_NEXT, 0)
         + mixed.take(_LAST, 0) * error.take(_LAST, 0)
     )
     solved = solved / determinant
-    parts = columns * solved[:, None]
-    step: FloatArray = parts[0] + parts[1] + parts[2]
+    products = columns * solved[:, None]
+    step: FloatArray = products[0] + products[1] + products[2]
     return step
 
 
-def _parameters(chain: Chain, most: int) -> FloatArray:
-    """Return what `ChainSolver` needs of a leg, in the order of `_Rows`."""
+def _parameters(chain: Chain, max_joints: int) -> FloatArray:
+    """Return the parameters of a leg for `ChainSolver`, in the order of `_Rows`."""
     count = len(chain.axes)
     frames = [_frame_about(axis) for axis in chain.axes]  # columns are the axes of each joint
     origins = [*chain.anchors_m, chain.foot_m]
-    stages = np.zeros((3, 4, most))
-    for joint in range(most):
+    stages = np.zeros((3, 4, max_joints))
+    for joint in range(max_joints):
         stages[:, :3, joint] = np.eye(3)
         if joint < count:
             if joint + 1 < count:
@@ -334,12 +337,12 @@ def _parameters(chain: Chain, most: int) -> FloatArray:
     length = float(np.linalg.norm(np.diff(origins, axis=0), axis=1).sum())
     singular = np.linalg.svd(columns.T, compute_uv=False)
     is_flat = count < 3 or singular[2] < _FLAT * singular[0]
-    weights = np.diag((1.0, 1.0, _HEIGHT_COUNTS if is_flat else 1.0)) @ to_first.T
+    weights = np.diag((1.0, 1.0, _HEIGHT_WEIGHT if is_flat else 1.0)) @ to_first.T
     return np.concatenate(
         (
             to_first.ravel(),
             stages.ravel(),
-            _expansion(chain, columns @ to_first.T, to_first, most, is_flat=is_flat).ravel(),
+            _expansion(chain, columns @ to_first.T, to_first, max_joints, is_flat=is_flat).ravel(),
             to_first @ (chain.foot_m - origins[0]),
             [length],
             weights.ravel(),
@@ -349,14 +352,14 @@ def _parameters(chain: Chain, most: int) -> FloatArray:
 
 
 def _expansion(
-    chain: Chain, columns: FloatArray, to_first: FloatArray, most: int, *, is_flat: bool
+    chain: Chain, columns: FloatArray, to_first: FloatArray, max_joints: int, *, is_flat: bool
 ) -> FloatArray:
-    """Return the second-order expansion of the inverse about the standing pose, (7, most, 3).
+    """Return the second-order expansion of the inverse about the standing pose, (7, max_joints, 3).
 
     J q + ½ H(q, q) = u is solved by q = A u − ½ A H(A u, A u), A the pseudoinverse of J. A foot
     that moves in a surface has none: it begins where it stands.
     """
-    expansion = np.zeros((7, most, 3))
+    expansion = np.zeros((7, max_joints, 3))
     if is_flat:
         return expansion
     count = len(columns)

@@ -21,24 +21,24 @@ from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 
 _CHUNK = 1500
-"""Feet whose numbers stay in a processor's cache."""
-_FEW = 300
-"""Feet of a step, whose parameters are kept from one step to the next."""
+"""Feet that are solved at once: their arrays fit into a processor's cache."""
+_MAX_CACHED_FEET = 300
+"""Largest number of feet whose parameters are cached: those of a step."""
 
 
 class ChainLegs(Legs):
     """Legs of a robot from a file.
 
     Attributes:
-        standing: of each leg its joints and foot while the robot stands.
+        standing: joints and foot of each leg while the robot stands.
         standing_rad: angles of all joints then, (joints,).
     """
 
     def __init__(self, robot: ModelRobot) -> None:
-        """Find the angles with which the robot stands.
+        """Compute the angles with which the robot stands.
 
         Raises:
-            ImpossibleLegs: if a foot does not reach the plane of the others.
+            ImpossibleLegs: if a foot does not reach the plane of the other feet.
         """
         model = robot.model
         legs = range(1, len(model.feet) + 1)
@@ -68,8 +68,8 @@ class ChainLegs(Legs):
         offsets[2] = lifts_m
         with np.errstate(all="ignore"):
             turned = solver.solve(offsets, solver.parameters_of(solver.parameters))
-        for leg, of_leg in enumerate(turned.tolist(), start=1):
-            if not math.isfinite(of_leg[0]):
+        for leg, angles in enumerate(turned.tolist(), start=1):
+            if not math.isfinite(angles[0]):
                 raise ImpossibleLegs(
                     f"the foot of leg {leg} cannot stand on one plane with the others, "
                     f"{1000 * lifts_m[leg - 1]:.0f} mm from where it is at home: choose another "
@@ -77,11 +77,13 @@ class ChainLegs(Legs):
                     [leg],
                 )
         change = np.concatenate(
-            [of_leg[: len(self.of_leg(leg))] for leg, of_leg in enumerate(turned, start=1)]
+            [angles[: len(self.of_leg(leg))] for leg, angles in enumerate(turned, start=1)]
         )
         self.standing_rad = self.standing_rad + change
         by_leg = {leg: self.standing_rad[self.leg_of_joint == leg - 1] for leg in self._numbers}
-        self.standing = leg_chains(robot.model, {leg: by.tolist() for leg, by in by_leg.items()})
+        self.standing = leg_chains(
+            robot.model, {leg: angles.tolist() for leg, angles in by_leg.items()}
+        )
 
     @property
     def _numbers(self) -> range:
@@ -109,15 +111,15 @@ class ChainLegs(Legs):
         return places
 
     def turned(self, angles: FloatArray) -> FloatArray:
-        """Return by how much joints are turned from the standing pose, (most, k, legs) [rad].
+        """Return by how much joints are turned from the standing pose, (max_joints, k, legs) [rad].
 
         Args:
-            angles: of all joints, (k, joints) [rad].
+            angles: angles of all joints, (k, joints) [rad].
         """
-        if len(self.joints) == self._solver.most * len(self):
+        if len(self.joints) == self._solver.max_joints * len(self):
             by_leg = (angles - self.standing_rad).reshape(len(angles), len(self), -1)
             return np.ascontiguousarray(np.moveaxis(by_leg, -1, 0))
-        turned = np.zeros((self._solver.most, len(angles), len(self)))
+        turned = np.zeros((self._solver.max_joints, len(angles), len(self)))
         first = np.searchsorted(self.leg_of_joint, self.leg_of_joint)
         place = np.arange(len(self.joints)) - first
         turned[place, :, self.leg_of_joint] = (angles - self.standing_rad).T
@@ -139,12 +141,12 @@ class ChainKinematics(FootKinematics):
         feet = np.array([chain.foot_m for chain in legs.standing])
         x, y = feet[:, 0], feet[:, 1]
         self._feet_m = feet.T[:, None]
-        self._kept = lru_cache(maxsize=16)(self._parameters_of)
+        self._cached_parameters = lru_cache(maxsize=16)(self._parameters_of)
         self.homes_m = np.stack(
             (x * self._cos - y * self._sin, x * self._sin + y * self._cos), axis=1
         )
         ones = np.ones(len(legs))
-        self._home_rad = np.zeros((len(legs), solver.most))
+        self._home_rad = np.zeros((len(legs), solver.max_joints))
         for leg in range(len(legs)):
             home_rad = legs.standing_rad[legs.leg_of_joint == leg]
             self._home_rad[leg, : len(home_rad)] = home_rad
@@ -157,7 +159,7 @@ class ChainKinematics(FootKinematics):
                 np.arange(len(legs)),
             ]
         )
-        """Of each leg: x and y of the body frame for x of the robot frame, and for its y; and the
+        """For each leg: x and y of the body frame for x of the robot frame, and for its y; and the
         index of the leg."""
 
     def mirrored(self, signs: FloatArray) -> FloatArray:
@@ -183,18 +185,19 @@ class ChainKinematics(FootKinematics):
         offsets[:2] = frames[:2] * places[0] + frames[2:4] * places[1]
         offsets[2] = heights
         offsets, legs = offsets.reshape(3, -1), frames[4].astype(int).ravel()
-        angles = np.empty((len(legs), self._solver.most))
+        angles = np.empty((len(legs), self._solver.max_joints))
         with np.errstate(invalid="ignore", over="ignore"):
             for start in range(0, len(legs), _CHUNK):
                 chunk = slice(start, start + _CHUNK)
-                which = legs[chunk].tobytes()
-                parameters = (self._kept if len(legs) <= _FEW else self._parameters_of)(which)
+                is_cached = len(legs) <= _MAX_CACHED_FEET
+                parameters_of = self._cached_parameters if is_cached else self._parameters_of
+                parameters = parameters_of(legs[chunk].tobytes())
                 turned = self._solver.solve(offsets[:, chunk], parameters, near)
                 angles[chunk] = self._home_rad[legs[chunk]] + turned
         return angles.reshape(*shape, -1)
 
     def _parameters_of(self, legs: bytes) -> FootParameters:
-        """Return what `solve` needs of feet, by the indices of their legs."""
+        """Return the parameters of feet for `ChainSolver.solve`, by the indices of their legs."""
         return self._solver.parameters_of(self._solver.parameters[:, np.frombuffer(legs, int)])
 
     def foot_offsets(self, angles: Sequence[float]) -> list[tuple[float, float, float]]:

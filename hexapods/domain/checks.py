@@ -1,4 +1,4 @@
-"""Checks of what a user gave: whole numbers, limits as annotated in a type, formats of files."""
+"""Validation of user input: whole numbers, limits annotated in a type, formats of files."""
 
 from dataclasses import asdict
 
@@ -28,11 +28,11 @@ def check_format(label: str, version: object, supported: int | str) -> None:
 
     Args:
         label: name of the file.
-        version: which the file says, untrusted.
-        supported: which is read.
+        version: the version in the file, untrusted.
+        supported: the version that this program reads.
 
     Raises:
-        OtherFormat: if it is an earlier or a later one, or none.
+        OtherFormat: if the versions differ, or the file has none.
     """
     if type(version) is not type(supported) or version != supported:
         raise OtherFormat(
@@ -61,7 +61,7 @@ def satisfies(limit: Limit, value: float) -> bool:
 
 
 def parse_number(text: str, is_whole: bool) -> float | int | str:
-    """Parse a number; return the text itself if it is none."""
+    """Parse a number; return the text itself if it is not one."""
     try:
         return int(text) if is_whole else float(text)
     except ValueError:

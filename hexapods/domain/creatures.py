@@ -1,9 +1,9 @@
 """Robots that are built in: the paper's hexapod, creatures with other legs, and real kits.
 
-Legs are numbered anticlockwise from the front right one; body y points forward. What a creature
-does not say is as in the paper's hexapod. Kits have the dimensions, masses and servos of their
-makers, and swing in the time that their servos take at 70 % of their speed. What was guessed is
-said in the description.
+Legs are numbered anticlockwise from the front right one; body y points forward. Fields that a
+creature leaves out are those of the paper's hexapod. Kits have the dimensions, masses and servos
+that their makers state, and swing in the time that their servos take at 70 % of their speed. The
+description names the values that were guessed.
 """
 
 import math
@@ -24,7 +24,7 @@ class Creature:
         robot: the robot.
         gait: one that suits it.
         title: its name on the page.
-        description: one sentence, and another one on what is guessed.
+        description: one sentence, and another that names guessed values.
     """
 
     robot: Robot
@@ -49,7 +49,7 @@ def both_sides(right: Sequence[LegMount]) -> tuple[LegMount, ...]:
 
 
 def _kit(name: str, mass_kg: float, legs: tuple[LegMount, ...], **dimensions: Any) -> Robot:
-    """Return a kit of which the mass is known: the torso has what the legs leave."""
+    """Return a kit of this total mass: the torso has what remains beside the legs."""
     robot = Robot(name=name, legs=legs, **dimensions)
     per_leg_kg = robot.coxa_kg + robot.femur_kg + robot.tibia_kg + robot.foot_kg
     return replace(robot, torso_kg=mass_kg - len(legs) * per_leg_kg)
@@ -249,11 +249,11 @@ CREATURES: dict[str, Creature] = {
     ),
 }
 """Robots that are built in, by name."""
-PRESETS: dict[str, Robot] = {name: one.robot for name, one in CREATURES.items()}
+PRESETS: dict[str, Robot] = {name: creature.robot for name, creature in CREATURES.items()}
 
 
 def own_gait(robot: Robot) -> str | GaitSpec:
-    """Return the gait that suits a robot, or one by one if none is known for as many legs."""
+    """Return the gait that suits a robot; `one-by-one` if none is known for its number of legs."""
     if robot.document is not None:
         gait = None if robot.document.gait is None else read_gait(robot.document.gait)
         return "one-by-one" if gait is None or not _divides(gait, robot) else gait

@@ -28,14 +28,14 @@ def disturbance_from(data: Mapping[str, Any] | Disturbance) -> Disturbance:
     if not isinstance(name, str) or name not in KINDS:
         raise UnknownName("kind of disturbance", name, KINDS)
     kind = KINDS[name]
-    kind_fields = fields(kind)
-    for field in values:
-        if field not in {field_.name for field_ in kind_fields}:
-            raise UnknownName(f"field of {name}", field, [field_.name for field_ in kind_fields])
+    required = {field.name: field.default is MISSING for field in fields(kind)}
+    for field_name in values:
+        if field_name not in required:
+            raise UnknownName(f"field of {name}", field_name, required)
     missing = [
-        field_.name
-        for field_ in kind_fields
-        if field_.default is MISSING and field_.name not in values
+        field_name
+        for field_name, is_required in required.items()
+        if is_required and field_name not in values
     ]
     if missing:
         raise InvalidInput(f"{name} needs {', '.join(missing)}")
@@ -43,7 +43,7 @@ def disturbance_from(data: Mapping[str, Any] | Disturbance) -> Disturbance:
 
 
 def as_mapping(value: Disturbance) -> dict[str, Any]:
-    """Return a disturbance in plain types, the inverse of `disturbance`."""
+    """Return a disturbance in plain types, the inverse of `disturbance_from`."""
     values = {field.name: getattr(value, field.name) for field in fields(value)}
     plain = {k: list(v) if isinstance(v, tuple) else v for k, v in values.items() if v is not None}
     return {"kind": value.kind, **plain}
@@ -51,7 +51,7 @@ def as_mapping(value: Disturbance) -> dict[str, Any]:
 
 def json_schema(kind: type[Disturbance]) -> Schema:
     """Return the JSON schema of a kind of disturbance."""
-    # As in `hexapods.domain.records`.
+    # Imported only here, as in `hexapods.domain.records`.
     from pydantic import TypeAdapter  # noqa: PLC0415
 
     declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
@@ -79,26 +79,28 @@ def _any_kind() -> Schema:
     return {"anyOf": [json_schema(kind) for kind in KINDS.values()]}
 
 
-_PART: Schema = {
+_FIELD_SCHEMA: Schema = {
     "anyOf": [
         {"type": ["number", "string", "null"]},
         {"type": "array", "items": {"type": "integer"}},
     ]
 }
-SENT: Schema = {
+DISTURBANCE_SCHEMA: Schema = {
     "type": "object",
     "description": "A disturbance from a step on; the fields of its kind are further members.",
     "properties": {"kind": {"type": "string"}, "at_step": {"type": "integer", "minimum": 0}},
     "required": ["kind", "at_step"],
-    "additionalProperties": _PART,
+    "additionalProperties": _FIELD_SCHEMA,
 }
 """JSON schema of a disturbance in answers."""
-AnyDisturbance = Annotated[Disturbance, JsonForm(disturbance_from, as_mapping, _any_kind, SENT)]
+AnyDisturbance = Annotated[
+    Disturbance, JsonForm(disturbance_from, as_mapping, _any_kind, DISTURBANCE_SCHEMA)
+]
 """A disturbance of any kind."""
 
 
 SHORT_NAMES = MappingProxyType({"at": "at_step", "until": "until_step"})
-"""Names of fields in a text, where they are others: name in a text → field."""
+"""Fields with a shorter name in a text: short name → field."""
 
 
 def as_text(value: Disturbance) -> str:
@@ -106,11 +108,11 @@ def as_text(value: Disturbance) -> str:
     values = as_mapping(value)
     name = values.pop("kind")
     times = [(short, values.pop(field)) for short, field in SHORT_NAMES.items() if field in values]
-    parts = [
-        f"{field}={','.join(map(str, value_)) if isinstance(value_, list) else value_}"
-        for field, value_ in [*values.items(), *times]
+    assignments = [
+        f"{field}={','.join(map(str, setting)) if isinstance(setting, list) else setting}"
+        for field, setting in [*values.items(), *times]
     ]
-    return ":".join([name, *parts])
+    return ":".join([name, *assignments])
 
 
 def parse_disturbance(text: str) -> Disturbance:
@@ -119,17 +121,17 @@ def parse_disturbance(text: str) -> Disturbance:
     Raises:
         UnknownName, InvalidInput: if it is not valid.
     """
-    name, *parts = text.split(":")
+    name, *assignments = text.split(":")
     if name not in KINDS:
         raise UnknownName("disturbance", name, KINDS)
     settings = declared_fields(KINDS[name])  # type: ignore[arg-type]
     values: dict[str, Any] = {}
-    for part in parts:
-        field, equals, value = part.partition("=")
+    for assignment in assignments:
+        field, equals, value = assignment.partition("=")
         field = SHORT_NAMES.get(field, field)
         if not equals or field in values or field == "kind":
             raise InvalidInput(
-                f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {part!r} is not"
+                f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {assignment!r} is not"
             )
         if field in settings:
             values[field] = settings[field].parse(value)

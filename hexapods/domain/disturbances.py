@@ -38,7 +38,7 @@ _Friction = Annotated[
 LEGS = Setting(title="Legs", help="The numbers of the legs, from 1.")
 """Description of the field `legs`."""
 Key = tuple[Any, ...]
-"""Part that a disturbance changes; that of a leg is the beginning of those of its joints."""
+"""Name of the part that a disturbance changes; a leg's is a prefix of those of its joints."""
 
 
 class RangesByChoice(NamedTuple):
@@ -70,22 +70,22 @@ class Disturbance:
     help: ClassVar[str]
     """One sentence for users."""
     size: ClassVar[str | None] = None
-    """The field that says how much happens; None if there is no less of it."""
+    """The field with the strength of the disturbance; None if that does not vary."""
     nothing: ClassVar[float | str | None] = 0.0
-    """The size at which nothing happens: a number, or the field of the robot that has it; None if
-    something always happens."""
+    """The size without an effect: a number, or the field of the robot that has it; None if every
+    size has an effect."""
     ranges: ClassVar[Mapping[str, RangesByChoice]] = MappingProxyType({})
     """Narrower limits of fields, by the choice of another field."""
     lasts: ClassVar[bool] = True
-    """Whether it holds until another of the same thing; a push does not."""
+    """Whether it holds until another disturbance of the same part; a push does not."""
     identified_by: ClassVar[tuple[str, ...]] = ()
-    """The fields that tell, beside the kind, what it changes; of a list each value by itself."""
+    """The fields that name, with the kind, the part that it changes."""
     part: ClassVar[Key] = ()
     """The part of a leg to which it happens; by default all of it."""
     repairs: ClassVar[bool] = False
     """Whether it only ends what happened before."""
     adjective: ClassVar[str] = ""
-    """Of a leg to which it has happened; empty where that is the kind."""
+    """Adjective of a leg to which it has happened; empty where `kind` is one."""
 
     at_step: Annotated[
         int,
@@ -121,7 +121,7 @@ class Disturbance:
         return self.at_step <= step and (self.until_step is None or step < self.until_step)
 
     def parts(self) -> "Mapping[Key, Disturbance]":
-        """Return it by what it changes, leg by leg; the newest disturbance of a key holds."""
+        """Return the disturbance of each part that it changes; the newest of a part holds."""
         return {(self.kind, *(getattr(self, name) for name in self.identified_by)): self}
 
     def check(self, robot: Robot) -> None:
@@ -133,15 +133,15 @@ class Disturbance:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _OfLegs(Disturbance):
-    """Something that happens to legs, given by their numbers from 1."""
+class _LegDisturbance(Disturbance):
+    """Base class of disturbances of legs, by their numbers from 1."""
 
     identified_by = ("legs",)
     legs: Sequence[int]
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        legs: Any = self.legs  # as a user gave them
+        legs: Any = self.legs  # not validated
         is_list = isinstance(legs, list | tuple)
         if is_list:  # JSON does not distinguish 2.0 from 2
             legs = [int(x) if isinstance(x, float) and x.is_integer() else x for x in legs]
@@ -170,7 +170,7 @@ def _check_leg(kind: str, leg: int, robot: Robot) -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Limp(_OfLegs):
+class Limp(_LegDisturbance):
     """Legs whose servos are without power."""
 
     kind = "limp"
@@ -181,7 +181,7 @@ class Limp(_OfLegs):
 
 @dataclass(frozen=True, kw_only=True)
 class Stuck(Disturbance):
-    """A joint whose servo holds one angle, whatever it is told."""
+    """A joint whose servo holds one angle, whatever its command."""
 
     kind = "stuck"
     title = "Stuck joint"
@@ -215,7 +215,7 @@ class Stuck(Disturbance):
             )
 
     def parts(self) -> "Mapping[Key, Disturbance]":
-        """Return itself as what happened to the joint."""
+        """Return itself by the joint's key."""
         return {("leg", self.leg, self.joint): self}
 
     def check(self, robot: Robot) -> None:
@@ -231,7 +231,7 @@ class Stuck(Disturbance):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lost(_OfLegs):
+class Lost(_LegDisturbance):
     """Legs that are gone."""
 
     kind = "lost"
@@ -240,7 +240,7 @@ class Lost(_OfLegs):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Weak(_OfLegs):
+class Weak(_LegDisturbance):
     """Legs whose servos have less torque."""
 
     kind = "weak"
@@ -254,8 +254,8 @@ class Weak(_OfLegs):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Repair(_OfLegs):
-    """Legs that work again as they were built: ends what happened to them before."""
+class Repair(_LegDisturbance):
+    """Legs that work again as they were built: ends their earlier disturbances."""
 
     kind = "repair"
     title = "Repaired legs"
@@ -314,7 +314,7 @@ class Patch(Disturbance):
     kind = "patch"
     title = "Patch"
     help = "A strip across the track with another friction."
-    # On other ground, such as ice, a strip with the robot's own friction is something.
+    # On other ground, such as ice, a strip with the robot's own friction has an effect.
     size, nothing = "friction", None
     identified_by = ("from_m", "to_m")
     from_m: Annotated[
@@ -409,8 +409,8 @@ class DeadBand(Disturbance):
 
 
 KINDS: Mapping[str, type[Disturbance]] = {
-    one.kind: one
-    for one in (
+    kind.kind: kind
+    for kind in (
         Limp, Stuck, Lost, Weak, Repair, Slope, Rough, Friction, Patch, Payload, Push,
         SensorNoise, Delay, DeadBand,
     )

@@ -11,7 +11,7 @@ class HexapodError(Exception):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # By default an error is pickled as a call with its message alone. A pool of processes would
-        # break on one whose constructor takes something else.
+        # break on an error whose constructor takes other arguments.
         return _restored, (type(self), self.args, self.__dict__)
 
 
@@ -28,7 +28,7 @@ class InvalidInput(HexapodError, ValueError):
     """The user's input is invalid; the message names the valid choices. Also a `ValueError`.
 
     Attributes:
-        field: of the input, which is invalid; "" if it is not said, as where several do not fit.
+        field: name of the invalid field; "" if it is unknown, or several do not fit together.
     """
 
     def __init__(self, message: str = "", *, field: str = "") -> None:
@@ -38,7 +38,7 @@ class InvalidInput(HexapodError, ValueError):
 
 @contextmanager
 def about(field: str) -> Iterator[None]:
-    """Say which field invalid input is about that is found within, unless it says so itself."""
+    """Set the `field` of an `InvalidInput` raised in the block, unless it has one."""
     try:
         yield
     except InvalidInput as error:
@@ -61,7 +61,7 @@ class UnknownName(InvalidInput):
 
 
 class ImpossibleLegs(InvalidInput):
-    """Legs of a robot cannot be as they were given.
+    """The legs of a robot are geometrically impossible.
 
     Attributes:
         legs: their numbers, from 1.

@@ -26,9 +26,9 @@ class Feet(NamedTuple):
     commanded: Cells
     """The cell that each group was last sent to."""
     lateral_m: tuple[float, ...]
-    """Of each group, to the right of home [m]."""
+    """Offset of each group to the right of home [m]."""
     forward_m: tuple[float, ...]
-    """Of each group, forward of home [m]."""
+    """Offset of each group forward of home [m]."""
 
     @property
     def offsets_m(self) -> tuple[tuple[float, float], ...]:
@@ -38,8 +38,8 @@ class Feet(NamedTuple):
     @classmethod
     def at_home(cls, groups: int) -> "Feet":
         """Return the offsets with every foot at home."""
-        nothing = (0.0,) * groups
-        return cls((0,) * groups, nothing, nothing)
+        zeros = (0.0,) * groups
+        return cls((0,) * groups, zeros, zeros)
 
     def landed(self, group: int, cell: int, place_m: tuple[float, float]) -> "Feet":
         """Return the offsets after the swing phase.
@@ -86,7 +86,7 @@ class Feet(NamedTuple):
 
 
 class Reach(NamedTuple):
-    """How far the feet of each group may be from home, where not all that can occur is possible."""
+    """Limits of each group's forward offset, where not every one that can occur is in reach."""
 
     back_m: tuple[float, ...]
     """Lowest forward offset of each group, below 0 [m]."""
@@ -102,7 +102,7 @@ class StepLaw:
     """
 
     def __init__(self, gait: Gait, grid: FootGrid, reach: Reach | None) -> None:
-        """Create the law; `reach` None if the feet reach all that can occur."""
+        """Create the law; `reach` None if the feet reach every offset that can occur."""
         self.reach, self.sizes, self._places = reach, gait.sizes, grid.places_m
 
     def at_home(self) -> Feet:

@@ -57,7 +57,8 @@ class GaitSpec:
     groups: tuple[Group, ...] | Grouping | None = None
 
     def __post_init__(self) -> None:
-        if sum(part is not None for part in (self.symmetry, self.pairs, self.groups)) != 1:
+        options = self.symmetry, self.pairs, self.groups
+        if sum(option is not None for option in options) != 1:
             raise InvalidInput(
                 "a gait needs one of symmetry (origin or vertical), pairs, and groups of legs"
             )
@@ -78,11 +79,11 @@ def _leg_number(name: str, leg: object) -> int:
     """Return a leg's number, of NumPy too, as an `int`.
 
     Raises:
-        InvalidInput: if it is no whole number.
+        InvalidInput: if it is not a whole number.
     """
     try:
         if not isinstance(leg, bool):
-            return index(leg)  # type: ignore[arg-type]  # what it refuses is refused here
+            return index(leg)  # type: ignore[arg-type]  # its TypeError is handled below
     except TypeError:
         pass
     raise InvalidInput(f"{name} must be the number of a leg, a whole number from 1, not {leg!r}")
@@ -136,7 +137,7 @@ def read_gait(value: Any) -> str | GaitSpec:
     """Return a gait from user input: its name, or its legs with symmetry, pairs or groups.
 
     Raises:
-        UnknownName, InvalidInput: if it is none.
+        UnknownName, InvalidInput: if it is not a gait.
     """
     if isinstance(value, GaitSpec):
         return value
@@ -171,7 +172,7 @@ def gait_as_json(value: str | GaitSpec) -> str | dict[str, Any]:
 _NAME: Schema = {"type": "string", "enum": list(NAMED_GAITS)}
 _LEG: Schema = {"type": "integer", "minimum": 1, "maximum": MAX_LEGS}
 _PAIR: Schema = {"type": "array", "prefixItems": [_LEG, _LEG], "minItems": 2, "maxItems": 2}
-_SENT: Schema = {
+_OUTPUT: Schema = {
     "type": "object",
     "description": "A gait by its legs, with symmetry, pairs or groups.",
     "properties": {
@@ -189,13 +190,13 @@ _SENT: Schema = {
     "required": ["right_leg", "left_leg"],
     "additionalProperties": False,
 }
-_GIVEN: Schema = {
-    **_SENT,
+_INPUT: Schema = {
+    **_OUTPUT,
     "oneOf": [{"required": [name]} for name in ("symmetry", "pairs", "groups")],
 }
 AnyGait = Annotated[
     str | GaitSpec,
-    JsonForm(read_gait, gait_as_json, {"anyOf": [_NAME, _GIVEN]}, {"anyOf": [_NAME, _SENT]}),
+    JsonForm(read_gait, gait_as_json, {"anyOf": [_NAME, _INPUT]}, {"anyOf": [_NAME, _OUTPUT]}),
 ]
 """A gait by its name, or by its legs."""
 
@@ -255,7 +256,7 @@ class Gait:
         Args:
             feet_m: offset of each foot.
             lateral_m: planned x of each group, which is taken where all feet stand on the axis:
-                they do not move sideways, so that they tell nothing of it.
+                they do not move sideways, so that x cannot be measured.
         """
         mirror, offsets = self.mirror, []
         for group, planned in zip(self.groups, lateral_m, strict=True):
@@ -334,8 +335,8 @@ def _name(gait: str | GaitSpec) -> str:
     if isinstance(gait.groups, str):
         how: str = gait.groups
     else:
-        parts = gait.pairs or gait.groups or ()
-        how = gait.symmetry or " ".join("+".join(map(str, group)) for group in parts)
+        groups = gait.pairs or gait.groups or ()
+        how = gait.symmetry or " ".join("+".join(map(str, group)) for group in groups)
     return f"right {gait.right_leg}, left {gait.left_leg}, {how}"
 
 
@@ -346,8 +347,8 @@ def _wrap(angle_deg: float) -> float:
 
 
 def _leg_at(azimuth_deg: float, azimuths: Sequence[float], of_leg: int, symmetry: str) -> int:
-    for leg, other in enumerate(azimuths, start=1):
-        if abs(_wrap(other - azimuth_deg)) < _SAME_DIRECTION_DEG and leg != of_leg:
+    for leg, azimuth in enumerate(azimuths, start=1):
+        if abs(_wrap(azimuth - azimuth_deg)) < _SAME_DIRECTION_DEG and leg != of_leg:
             return leg
     raise InvalidInput(
         f"leg {of_leg} has no partner under {symmetry} symmetry: no other leg stands at "
@@ -398,7 +399,7 @@ def _groups_by(grouping: Grouping, azimuths: Sequence[float]) -> tuple[Group, ..
     - `one-by-one`: each leg alone.
 
     Raises:
-        InvalidInput: if the rule makes no sense for these legs.
+        InvalidInput: if the rule does not apply to these legs.
     """
     legs = sorted(range(1, len(azimuths) + 1), key=lambda leg: azimuths[leg - 1] % 360)
     groups, problem = _GROUPINGS[grouping](legs, azimuths)
@@ -413,7 +414,7 @@ def _groups_by(grouping: Grouping, azimuths: Sequence[float]) -> tuple[Group, ..
 
 
 _Divided = tuple[list[list[int]], str]
-"""Groups of legs, and why they make no sense; nothing if they do."""
+"""Groups of legs, and why the rule does not apply to these legs; "" if it does."""
 
 
 def _every_other(legs: list[int], azimuths: Sequence[float]) -> _Divided:  # noqa: ARG001
@@ -466,7 +467,7 @@ _GROUPINGS: Mapping[Grouping, Callable[[list[int], Sequence[float]], _Divided]] 
     "bound": _bound,
     "one-by-one": _one_by_one,
 }
-"""By name what divides legs, which are ordered anticlockwise from straight ahead."""
+"""Function of each rule, which divides legs ordered anticlockwise from straight ahead."""
 
 
 def _check_leg(leg: int, count: int) -> None:

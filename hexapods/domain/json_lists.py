@@ -1,6 +1,6 @@
-"""How many lists and objects JSON from outside may have: a reader takes up to 800 bytes for each.
+"""Limit of the lists and objects in untrusted JSON: a parser takes up to 800 bytes for each.
 
-They need two bytes in the file, so that a limit of its size alone says little of the memory.
+Each takes two bytes in the file, so that a limit of its size does not bound the memory.
 """
 
 MAX_LISTS = 100_000
@@ -11,8 +11,8 @@ def check_lists(data: bytes) -> None:
     """Check that JSON has not too many lists and objects, before it is read.
 
     Raises:
-        ValueError: if it has.
+        ValueError: if it has too many.
     """
-    # Those within texts count, too; a document has few.
+    # Brackets within texts count, too; a document has few.
     if data.count(b"[") + data.count(b"{") > MAX_LISTS:
         raise ValueError(f"it has more than {MAX_LISTS:,} lists and objects")

@@ -42,7 +42,7 @@ class KinematicSimulator:
 
         Raises:
             Unreachable: if a cell of the grid is out of a leg's reach.
-            InvalidInput: if something happens that this simulator does not know.
+            InvalidInput: if a disturbance of the world is not simulated here.
         """
         self.law = StepLaw(gait, grid, check_reach(robot, gait, grid))
         world.check(robot, "kinematic")
@@ -61,7 +61,7 @@ class KinematicSimulator:
         """Return the state on the start line with the feet of each group in a cell of the grid.
 
         Raises:
-            InvalidInput: if that is not one cell of the grid for each group.
+            InvalidInput: unless there is one cell of the grid for each group.
         """
         groups, last = len(self.gait.groups), len(self.grid) - 1
         if len(cells) != groups:

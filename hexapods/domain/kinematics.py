@@ -36,12 +36,14 @@ class _CoxaFemurTibia(Legs):
             ],
             [coxa + femur + tibia + foot for coxa, femur, tibia, foot in zip(*links, strict=True)],
         )
-        self._robot, self._parts = robot, _parts_of(robot)
+        self._robot, self._links = robot, _link_lengths_of(robot)
 
     def feet_in_body(self, angles: FloatArray) -> FloatArray:
         legs = self._robot.legs
         coxa, femur, tibia = np.moveaxis(angles.reshape(len(angles), -1, 3), -1, 0)
-        along, across, height = _foot(_Parts(*np.array(self._parts).T), coxa, femur, tibia, np)
+        along, across, height = _foot(
+            _LinkLengths(*np.array(self._links).T), coxa, femur, tibia, np
+        )
         radius, z = (np.array([getattr(leg, name) for leg in legs]) for name in ("radius_m", "z_m"))
         azimuth, yaw = _directions(legs)
         along = along + radius
@@ -58,25 +60,25 @@ class _CoxaFemurTibia(Legs):
         links = []
         for number, leg in enumerate(self._robot.legs):
             coxa, femur, tibia = angles[3 * number : 3 * number + 3]
-            leg_parts, to = self._parts[number], yaws[number] + coxa
+            lengths, yaw = self._links[number], yaws[number] + coxa
             knee = (
-                leg_parts.coxa + leg_parts.femur * math.cos(femur),
-                leg_parts.femur * math.sin(femur),
+                lengths.coxa + lengths.femur * math.cos(femur),
+                lengths.femur * math.sin(femur),
             )
             foot = (
-                knee[0] + leg_parts.tibia * math.cos(femur + tibia),
-                knee[1] + leg_parts.tibia * math.sin(femur + tibia),
+                knee[0] + lengths.tibia * math.cos(femur + tibia),
+                knee[1] + lengths.tibia * math.sin(femur + tibia),
             )
-            at = np.array(
+            mount = np.array(
                 [
                     leg.radius_m * math.cos(azimuths[number]),
                     leg.radius_m * math.sin(azimuths[number]),
                     leg.z_m,
                 ]
             )
-            along = np.array([math.cos(to), math.sin(to), 0])
-            profile = np.array([(0.0, 0.0), (leg_parts.coxa, 0.0), knee, foot])
-            links.append(at + profile[:, :1] * along + profile[:, 1:] * np.array([0, 0, 1]))
+            along = np.array([math.cos(yaw), math.sin(yaw), 0])
+            profile = np.array([(0.0, 0.0), (lengths.coxa, 0.0), knee, foot])
+            links.append(mount + profile[:, :1] * along + profile[:, 1:] * np.array([0, 0, 1]))
         return links
 
     def under(self, gait: Gait) -> FootKinematics:
@@ -96,8 +98,8 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
             + radius * np.stack([sin - np.sin(azimuth), np.cos(azimuth) - cos])
         ).T
         heights = robot.body_height_m + np.array([leg.z_m for leg in robot.legs])
-        self._parts = _parts_of(robot)
-        coxa, femur, tibia = np.array(self._parts).T
+        self._links = _link_lengths_of(robot)
+        coxa, femur, tibia = np.array(self._links).T
         self.frames = np.array(
             [
                 (home, 0 * home),
@@ -108,7 +110,7 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
                 (femur * femur + tibia * tibia, 2 * femur * tibia),
             ]
         )
-        """Of each leg, (6, 2, legs): an affine map from the robot frame to the leg's frame, which
+        """For each leg, (6, 2, legs): an affine map from the robot frame to the leg's frame, which
         is home's position from the coxa joint [m], the coefficients of x, the coefficients of y,
         each along the leg and across; then lengths of the coxa and height of its joint, lengths of
         femur and tibia, the sum of their squares and twice their product."""
@@ -140,7 +142,7 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
         offsets = []
         for leg, (home, _, x_along, x_across, y_along, y_across) in enumerate(self._numbers):
             coxa, femur, tibia = angles[3 * leg : 3 * leg + 3]
-            reach, across, height = _foot(self._parts[leg], coxa, femur, tibia, math)
+            reach, across, height = _foot(self._links[leg], coxa, femur, tibia, math)
             along = reach - home
             offsets.append(
                 (
@@ -152,7 +154,7 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
         return offsets
 
 
-class _Parts(NamedTuple):
+class _LinkLengths(NamedTuple):
     """Lengths of the links of a leg [m], or of all legs, (legs,)."""
 
     coxa: Any
@@ -160,9 +162,9 @@ class _Parts(NamedTuple):
     tibia: Any
 
 
-def _parts_of(robot: Robot) -> list[_Parts]:
+def _link_lengths_of(robot: Robot) -> list[_LinkLengths]:
     links = map(robot.of_legs, ("coxa_m", "femur_m", "tibia_m"))
-    return [_Parts(*lengths_m) for lengths_m in zip(*links, strict=True)]
+    return [_LinkLengths(*lengths_m) for lengths_m in zip(*links, strict=True)]
 
 
 def _directions(legs: Sequence[LegMount]) -> tuple[FloatArray, FloatArray]:
@@ -173,15 +175,18 @@ def _directions(legs: Sequence[LegMount]) -> tuple[FloatArray, FloatArray]:
     return np.deg2rad(azimuths), np.deg2rad(yaws)
 
 
-def _foot(leg: _Parts, coxa: Any, femur: Any, tibia: Any, of: Any) -> tuple[Any, Any, Any]:
+def _foot(
+    leg: _LinkLengths, coxa: Any, femur: Any, tibia: Any, functions: Any
+) -> tuple[Any, Any, Any]:
     """Return a foot's place from its coxa joint: along the leg, across, and upward [m].
 
-    Angles [rad] are floats with the functions of `math`, or arrays with those of `numpy`.
+    Angles [rad] are floats with `math` for `functions`, or arrays with `numpy`.
     """
     knee = femur + tibia
-    r = leg.coxa + leg.femur * of.cos(femur) + leg.tibia * of.cos(knee)
-    height = leg.femur * of.sin(femur) + leg.tibia * of.sin(knee)
-    return r * of.cos(coxa), r * of.sin(coxa), height
+    cos, sin = functions.cos, functions.sin
+    r = leg.coxa + leg.femur * cos(femur) + leg.tibia * cos(knee)
+    height = leg.femur * sin(femur) + leg.tibia * sin(knee)
+    return r * cos(coxa), r * sin(coxa), height
 
 
 _coxa_femur_tibia = lru_cache(maxsize=64)(_CoxaFemurTibia)
@@ -210,10 +215,11 @@ def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
     (1 − w) / w · h of home, h half the grid's side, w its group's share of all feet: the offsets of
     the feet sum to zero, and each group was last commanded to within h. Only long series of odd
     steps lead there, so a robot may walk whose legs reach less. Cached, since every run of an
-    experiment asks it again.
+    experiment checks it again.
 
     Returns:
-        None if every offset that can occur is within reach and joint limits; otherwise what is.
+        None if every offset that can occur is within reach and joint limits; otherwise the range
+        of those that are.
 
     Raises:
         Unreachable: if a foot does not reach a cell from home, naming the leg and the cell.
@@ -230,7 +236,7 @@ def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
 
 
 def out_of_reach(robot: Robot, gait: Gait, grid: FootGrid) -> dict[int, str]:
-    """Return what legs cannot reach of their grid, in a sentence by the leg's number."""
+    """Return a sentence for each leg that does not reach its grid, by the leg's number."""
     problems: dict[int, str] = {}
     for passage in _passages(robot, gait, grid):
         if passage.why is not None:
@@ -244,8 +250,9 @@ class _Passage(NamedTuple):
 
     Attributes:
         grid, cell: the cell, by its number.
-        why: where on the way that is, in words; None for a drift that only odd series lead to.
-        angles: of all joints [rad], NaN where a foot is out of reach.
+        why: where on the way, for the error message; None for a drift that only long series of
+            odd steps lead to.
+        angles: angles of all joints [rad], NaN where a foot is out of reach.
     """
 
     grid: FootGrid
@@ -275,7 +282,7 @@ def _passages(robot: Robot, gait: Gait, grid: FootGrid) -> Iterator[_Passage]:
         )
         for why, forward in passages:
             for height in (0.0, robot.step_height_m):
-                # Both (x, y) and (−x, y) are cells, so mirrored legs need not be told apart.
+                # Both (x, y) and (−x, y) are cells, so mirrored legs have the same places.
                 offsets = np.column_stack((np.full(count, x), forward, np.full(count, height)))
                 yield _Passage(grid, cell, why, kinematics.joint_angles(offsets))
 

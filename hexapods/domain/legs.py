@@ -1,8 +1,8 @@
-"""The interface of legs: what the rest of the program knows of those of a robot.
+"""The interface of a robot's legs: their joints and masses, and the kinematics of their feet.
 
-How many joints a leg has, what they are called and how its foot is moved is known here only. Two
-kinds implement it: `hexapods.domain.kinematics`, and `hexapods.domain.chains` for any chain. Which
-legs move together is a matter of the gait (`hexapods.domain.gait`).
+No other module depends on how many joints a leg has, on their names, or on how they move the foot.
+Two kinds implement it: `hexapods.domain.kinematics`, and `hexapods.domain.chains` for any chain.
+Which legs move together is a matter of the gait (`hexapods.domain.gait`).
 """
 
 from abc import ABC, abstractmethod
@@ -36,12 +36,12 @@ class Legs(ABC):
     """Legs of one robot: their joints, their masses, and where their feet are.
 
     Attributes:
-        joints: of all legs, in the order of poses, servo commands and torques: leg by leg.
-        masses_kg: of each leg, with its foot.
-        limits_rad: of all joints, (2, joints): lowest and highest angles.
+        joints: joints of all legs, in the order of poses, servo commands and torques: leg by leg.
+        masses_kg: mass of each leg with its foot.
+        limits_rad: lowest and highest angles of all joints, (2, joints).
         leg_of_joint: index of each joint's leg, from 0, (joints,).
-        follows_grid: of each leg whether its foot can go to any place near home; one of two joints
-            goes to the nearest place that it reaches.
+        follows_grid: for each leg whether its foot can go to any place near home; the foot of a
+            leg of two joints goes to the nearest place that it reaches.
     """
 
     def __init__(self, joints: Iterable[Joint], masses_kg: Sequence[float]) -> None:
@@ -64,7 +64,7 @@ class Legs(ABC):
         return [joint for joint in self.joints if joint.leg == leg]
 
     def index(self, leg: int, name: str) -> int:
-        """Return the place of a joint in `joints`; legs count from 1.
+        """Return the index of a joint in `joints`; legs count from 1.
 
         Raises:
             InvalidInput: if there is no such joint.
@@ -93,7 +93,7 @@ class Legs(ABC):
         """Return the centres of the feet in the body frame, (k, legs, 3) [m].
 
         Args:
-            angles: of all joints, (k, joints) [rad].
+            angles: angles of all joints, (k, joints) [rad].
         """
 
     @abstractmethod
@@ -101,7 +101,7 @@ class Legs(ABC):
         """Return where the joints and the foot of each leg are in the body frame, outward.
 
         Args:
-            angles: of all joints [rad], of one pose.
+            angles: angles of all joints in one pose [rad].
 
         Returns:
             For each leg (its joints + 1, 3) [m].
@@ -121,7 +121,7 @@ class FootKinematics(ABC):
     Attributes:
         legs: the legs.
         homes_m: home positions of the feet, (legs, 2).
-        frames: what `solve` needs to know of each leg, (..., legs).
+        frames: parameters of each leg for `solve`, (..., legs).
         is_costly: whether `solve` takes so long that a step's joint targets are interpolated
             between a few of its places.
     """
@@ -144,7 +144,7 @@ class FootKinematics(ABC):
         Args:
             places: offsets from home to the right and forward [m], (2, ...).
             heights: heights above the ground [m]; broadcasts with `places`.
-            frames: of each foot that of its leg, the legs of `frames` replaced by the feet.
+            frames: parameters of each foot's leg, as `frames` with feet in place of legs.
 
         Returns:
             (..., most joints of a leg) [rad], from the torso to the foot; NaN with a NumPy warning
@@ -158,7 +158,7 @@ class FootKinematics(ABC):
         In plain floats, which are faster than arrays for the legs of one pose.
 
         Args:
-            angles: of all joints [rad].
+            angles: angles of all joints [rad].
 
         Returns:
             For each leg (x, y, z), its foot's offset from home [m].
@@ -168,14 +168,14 @@ class FootKinematics(ABC):
         """Compute the inverse kinematics of all feet.
 
         Args:
-            offsets: of the feet from home, (..., legs, 3) [m].
+            offsets: offsets of the feet from home, (..., legs, 3) [m].
 
         Returns:
             (..., joints) [rad]; NaN where a foot is out of reach.
         """
         x, y, z = np.ascontiguousarray(np.moveaxis(offsets, -1, 0))
-        *parts, legs = self.frames.shape
-        frames = self.frames.reshape(*parts, *(1 for _ in offsets.shape[:-2]), legs)
+        *inner, legs = self.frames.shape
+        frames = self.frames.reshape(*inner, *(1 for _ in offsets.shape[:-2]), legs)
         with np.errstate(invalid="ignore"):
             return self.in_pose_order(self.solve(np.array((x, y)), z, frames))
 

@@ -11,13 +11,13 @@ from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot_model import RobotModel
 
-NUMBERS = tuple(one.name for one in fields(Robot) if one.name not in NO_NUMBERS)
+NUMBERS = tuple(field.name for field in fields(Robot) if field.name not in NO_NUMBERS)
 _LEG = ("azimuth_deg", "radius_m", "z_m", "yaw_deg", "foot_out_m")
 _LARGEST = 1e6
 
 
 def model_content(robot: ModelRobot) -> dict[str, Any]:
-    """Return a robot from a file by value: its model, and what was derived from it."""
+    """Return a robot from a file by value: its model, and the fields that were derived from it."""
     return {
         "model": to_json(robot.model),
         "robot": {
@@ -31,13 +31,13 @@ def read_model_content(content: Mapping[str, Any]) -> ModelRobot:
     """Return the robot of the output of `model_content`.
 
     Raises:
-        DamagedFile: if it is none.
+        DamagedFile: if the content is not such an output.
         InvalidInput: if its model or a number is not valid.
     """
     try:
         robot = dict(content["robot"])
         legs = tuple(LegMount(**_numbers(leg, _LEG)) for leg in robot.pop("legs"))
-        # As JSON, of which a strict reader takes lists for tuples, and no texts for numbers.
+        # As JSON: there Pydantic's strict mode takes lists for tuples, but no texts for numbers.
         model = from_json(RobotModel, json.dumps(content["model"]).encode(), strict=True)
         if len(legs) != len(model.feet):
             raise ValueError("it has other legs than its model")
@@ -52,10 +52,11 @@ def read_model_content(content: Mapping[str, Any]) -> ModelRobot:
 
 
 def _numbers(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, float]:
-    """Return numbers by these names.
+    """Return the numbers of these names.
 
     Raises:
-        ValueError: if there are others, or one is none.
+        ValueError: if the names differ.
+        InvalidInput: if a value is not a number, or too large.
     """
     if {*values} != {*names}:
         raise ValueError(f"it must have {', '.join(names)}")

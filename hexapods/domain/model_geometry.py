@@ -16,7 +16,7 @@ class Chain(NamedTuple):
     axes: FloatArray
     """Unit vectors, from the torso outward, (joints, 3)."""
     anchors_m: FloatArray
-    """A point of each axis, (joints, 3)."""
+    """A point on each axis, (joints, 3)."""
     foot_m: FloatArray
     """Centre of the foot, (3,)."""
 
@@ -44,9 +44,9 @@ def link_frames(model: RobotModel, angles: Mapping[int, Sequence[float]]) -> lis
 
     Args:
         model: the model.
-        angles: of the joints, by leg from 1 [rad].
+        angles: angles of the joints, by leg from 1 [rad].
     """
-    left = {leg: list(of_leg) for leg, of_leg in angles.items()}
+    remaining = {leg: list(leg_angles) for leg, leg_angles in angles.items()}
     frames: list[LinkFrame] = []
     for link in model.links:
         frame = LinkFrame(quaternion_matrix(link.wxyz), np.array(link.at_m, float))
@@ -54,7 +54,7 @@ def link_frames(model: RobotModel, angles: Mapping[int, Sequence[float]]) -> lis
             parent = frames[link.parent]
             frame = LinkFrame(parent.rotation @ frame.rotation, parent.point(frame.origin_m))
         if link.joint is not None:
-            turn = rotation_about(np.array(link.joint.axis, float), left[link.leg].pop(0))
+            turn = rotation_about(np.array(link.joint.axis, float), remaining[link.leg].pop(0))
             anchor = np.array(link.joint.anchor_m, float)
             frame = LinkFrame(frame.rotation @ turn, frame.point(anchor - turn @ anchor))
         frames.append(frame)
@@ -104,9 +104,9 @@ def turned_mounts(model: RobotModel, by_deg: Sequence[float]) -> RobotModel:
     return replace(model, links=tuple(links))
 
 
-def _quaternion_product(first: Sequence[float], other: Quaternion) -> Quaternion:
-    w, x, y, z = first
-    a, b, c, d = other
+def _quaternion_product(left: Sequence[float], right: Quaternion) -> Quaternion:
+    w, x, y, z = left
+    a, b, c, d = right
     product = np.array(
         [
             w * a - x * b - y * c - z * d,

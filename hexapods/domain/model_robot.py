@@ -1,4 +1,4 @@
-"""Robots from files: a `RobotModel`, and what follows from it for all that asks a `Robot`."""
+"""Robots from files: a `Robot` whose fields are derived from a `RobotModel`."""
 
 import math
 from collections.abc import Sequence
@@ -24,13 +24,14 @@ from hexapods.domain.sums import ordered_sum
 
 _SERVO = ("servo_kp", "servo_kv", "servo_torque_nm")
 _USUAL_LEG_M = math.hypot(0.15, 0.09)
-"""From the coxa joint to the foot of the paper's hexapod, whose times and heights are scaled."""
+"""Distance from the coxa joint to the foot of the paper's hexapod; times and heights are scaled by
+the length of a leg relative to it."""
 _STEP_HEIGHT_SHARE = 0.15
-"""Of that distance."""
+"""Step height, as a share of the length of a leg."""
 _LONGEST_SWING_S = 0.17
-"""Of a robot that stands on two legs meanwhile: with a longer one many fell."""
+"""Longest swing of a robot that stands on two legs meanwhile: with a longer one many fell."""
 _MOST_OF_HEIGHT = 0.8
-"""Of the height on which the torso stands, that its lower half has at most."""
+"""Half the torso's height at most, as a share of the height of its centre over the ground."""
 _STIFF = 1.0
 """Largest product of time step and frequency of a servo with its rotor alone."""
 
@@ -61,10 +62,10 @@ class ModelRobot(Robot):
     model: RobotModel = field(kw_only=True)
 
     def servo_of(self, leg: int, joint: str) -> ServoStrength:
-        of_joint = next(joint_ for joint_ in self.model.joints_of(leg) if joint_.name == joint)
+        joints = {model_joint.name: model_joint for model_joint in self.model.joints_of(leg)}
         return ServoStrength(
             *(
-                getattr(of_joint, name) * (getattr(self, name) / largest)
+                getattr(joints[joint], name) * (getattr(self, name) / largest)
                 for name, largest in zip(_SERVO, self._largest, strict=True)
             )
         )
@@ -95,7 +96,7 @@ class ModelRobot(Robot):
         return max(math.hypot(x, y) for x, y in self._homes_m)
 
     def _check_legs(self) -> None:
-        """Leave out what is checked of legs that are made from numbers: feet may be under hips."""
+        """Skip the checks of legs that are made from numbers: here feet may be under hips."""
 
 
 def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
@@ -106,7 +107,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
     Args:
         model: the model.
         name: its name.
-        changes: of fields, among `ModelRobot.changeable`.
+        changes: values of fields in `ModelRobot.changeable`.
 
     Raises:
         InvalidInput: if a number is out of range.
@@ -123,7 +124,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
     swing_s = min(max(0.2 * slowness, 0.1), 0.5)
     if len(model.feet) <= 4:
         swing_s = min(swing_s, _LONGEST_SWING_S)
-    fields_: dict[str, Any] = {
+    adjustable: dict[str, Any] = {
         "step_height_m": _STEP_HEIGHT_SHARE * leg_m,
         "swing_s": swing_s,
         "shift_s": min(max(0.12 * slowness, 0.06), 0.3),
@@ -145,7 +146,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
         foot_radius_m=foot_radius_m,
         joint_armature=max(joint.armature for joint in joints),
         joint_damping=max(*(joint.damping for joint in joints), 1e-4),
-        **fields_,
+        **adjustable,
     )
 
 
@@ -154,12 +155,12 @@ def torso_half_size_m(
 ) -> tuple[float, float, float]:
     """Return half the size of the box about the torso's centre that holds its geoms [m].
 
-    What is fixed to it, such as an arm, is left out. A torso that touches nothing has the box that
+    Links that are fixed to it, such as an arm, are left out. A torso without geoms has the box that
     holds the mounts of its legs. Its bottom is over the ground while the robot stands.
 
     Args:
         model: the model.
-        frames: of its links.
+        frames: frames of its links.
         standing_m: height of the torso's centre over the ground while it stands.
     """
     torso, frame = model.links[0], frames[0]

@@ -29,9 +29,9 @@ class StepPlan(NamedTuple):
     """The group that swings."""
     start: Feet
     landed: Feet
-    """After the swing."""
+    """Offsets after the swing."""
     end: Feet
-    """After the shift."""
+    """Offsets after the shift."""
     advance_m: float
     """Displacement of the body in the shift."""
 
@@ -42,13 +42,14 @@ class StepMotion:
     def __init__(
         self, robot: Robot, gait: Gait, law: StepLaw, substeps: IntArray | None = None
     ) -> None:
-        """Compute what all steps have in common.
+        """Compute the samples that all steps have in common.
 
         Args:
             robot: the robot.
             gait: the gait.
-            law: by which the feet move.
-            substeps: indices of those whose joint targets are computed, ascending; None for all.
+            law: the kinematic law by which the feet move.
+            substeps: indices of the substeps whose joint targets are computed, ascending; None for
+                all.
         """
         self.kinematics, self._law = legs_of(robot).under(gait), law
         total = robot.swing_substeps + robot.shift_substeps
@@ -77,7 +78,7 @@ class StepMotion:
         endpoints = np.array([_phase_endpoints(plan) for plan in plans])  # (n, 4, 2 · groups)
         source = samples.source.take(swinging, 1)  # (4, n, samples)
         order = samples.order.take(swinging, 0)  # (n, substeps · legs)
-        if len(plans) > 1:  # offset the indices to each plan's part of the flat arrays
+        if len(plans) > 1:  # offset the indices to each plan's rows of the flat arrays
             rows = np.arange(len(plans))[:, None]
             source += rows * endpoints[0].size
             order += rows * samples.share.size
@@ -93,9 +94,9 @@ class StepMotion:
         targets = self.kinematics.in_pose_order(by_leg)
         if self._swing is None and self._shift is None:
             return targets
-        parts = targets[:, : self._counts[0]], targets[:, self._counts[0] :]
+        swing, shift = targets[:, : self._counts[0]], targets[:, self._counts[0] :]
         return np.concatenate(
-            (_interpolated(parts[0], self._swing), _interpolated(parts[1], self._shift)), axis=1
+            (_interpolated(swing, self._swing), _interpolated(shift, self._shift)), axis=1
         )
 
 
@@ -143,7 +144,7 @@ def _phases(robot: Robot, substeps: IntArray) -> tuple[FloatArray, FloatArray]:
 def _knots(
     phases: FloatArray, count: int, kinematics: FootKinematics
 ) -> tuple[FloatArray | None, FloatArray]:
-    """Return the phases at which inverse kinematics is solved, and how others follow from them.
+    """Return the phases at which inverse kinematics is solved, and weights that interpolate them.
 
     Returns:
         Weights of the knots at each phase, (phases, knots), None if they are the phases
@@ -194,15 +195,15 @@ def _samples(
     """Sample the trajectory of a step: easing by half a cosine, lifting by half a sine.
 
     Args:
-        robot: for the step height.
-        gait: for the groups.
-        kinematics: of the feet under this gait.
+        robot: has the step height.
+        gait: has the groups.
+        kinematics: kinematics of the feet under this gait.
         swing_times: phases of the swing, 0 to 1.
         shift_shares: how far the feet have come in the shift, 0 to 1.
     """
     count = len(kinematics.legs)
-    # In the samples of each group there is room for the legs of the largest; a smaller one repeats
-    # some of its own there, which command nothing.
+    # The samples of each group have room for the legs of the largest group; a smaller one repeats
+    # some of its legs, whose samples command nothing.
     all_legs, groups, size = np.arange(count), len(gait.groups), max(gait.sizes)
     swing, shift = len(swing_times), len(shift_shares)
     swing_phase, shift_share = np.repeat(swing_times, size), np.repeat(shift_shares, count)
@@ -222,7 +223,7 @@ def _samples(
     group_of = np.array(gait.group_of_leg)[sample_legs] + in_phase  # (groups, samples)
     return _Samples(
         kinematics.mirrored(np.array(gait.mirror, float))[..., sample_legs],
-        np.stack([group_of + part * 2 * groups for part in range(4)]),
+        np.stack([group_of + row * 2 * groups for row in range(4)]),
         np.concatenate((zeros, ease(swing_phase), shift_share)),
         np.concatenate(
             (

@@ -21,7 +21,7 @@ Observation = Literal["measured", "commanded", "planned"]
 """`measured`: the cell nearest to where the group's feet are, by forward kinematics.
 `commanded`: the cell that the group was last sent to; aliased, so not Markov.
 `planned`: the cell nearest to where the group's feet would be if nothing had slipped or given way
-(dead reckoning from the commands); it does not depend on sensors, nor on what a leg really did."""
+(dead reckoning from the commands); it does not depend on sensors, nor on how a leg really moved."""
 
 OBSERVATIONS: tuple[Observation, ...] = get_args(Observation)
 PAPER_OBSERVATIONS: tuple[Observation, ...] = ("measured", "commanded")
@@ -45,7 +45,7 @@ def observe(
 
     Args:
         simulator: simulates the robot.
-        state: of the robot.
+        state: state of the robot.
         how: observation mode.
         error_m: errors of the measured offsets, (groups, 2) [m]; None for none.
     """
@@ -64,7 +64,7 @@ def measured_offsets(
 
     Args:
         simulator: simulates the robot.
-        state: of the robot.
+        state: state of the robot.
         error_m: errors of measurement, (groups, 2) [m]; None for none.
     """
     offsets = simulator.group_offsets(state)
@@ -91,8 +91,8 @@ def action_mask(legal: Sequence[Action], groups: int, cells: int) -> NDArray[np.
 @lru_cache(maxsize=1 << 10)
 def legal_actions(cells: Cells, cell_count: int) -> tuple[Action, ...]:
     """Return all legal actions, group by group: every cell but the group's observed one."""
-    parts = [_actions_except(group, present, cell_count) for group, present in enumerate(cells)]
-    return tuple(chain.from_iterable(parts))
+    by_group = (_actions_except(group, present, cell_count) for group, present in enumerate(cells))
+    return tuple(chain.from_iterable(by_group))
 
 
 @lru_cache(maxsize=1 << 12)

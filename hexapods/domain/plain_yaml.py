@@ -14,16 +14,16 @@ import yaml
 from hexapods.domain.errors import InvalidInput
 
 MAX_NODES = 10_000
-"""Names and values that `read_plain` reads."""
+"""Most names and values that `read_plain` reads."""
 _TAG = "tag:yaml.org,2002:"
 
 
 class NodeLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no annotations
-    """Composes nodes, but neither aliases nor depths.
+    """Composes nodes; refuses aliases, deep nesting and too many nodes.
 
     Attributes:
-        max_depth: levels of nesting that are read.
-        max_nodes: names and values that are read.
+        max_depth: most levels of nesting.
+        max_nodes: most names and values.
     """
 
     max_depth = 5
@@ -31,7 +31,7 @@ class NodeLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no annota
     _depth = _nodes = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Return the next node; raises a `YAMLError` for one that is not read."""
+        """Return the next node; raises a `YAMLError` for one that is refused."""
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent):
             problem = f"*{event.anchor[:40]}: aliases are not read; write the value out"
@@ -50,7 +50,7 @@ class NodeLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no annota
 
 
 class _PlainLoader(NodeLoader):
-    """Composes nodes whose plain scalars are what JSON has: YAML 1.1 takes `no` for false."""
+    """Composes nodes whose plain scalars are those of JSON: YAML 1.1 takes `no` for false."""
 
     max_depth = 16
     max_nodes = MAX_NODES
@@ -60,7 +60,7 @@ class _PlainLoader(NodeLoader):
 class _PlainDumper(yaml.SafeDumper):  # type: ignore[misc]  # as above
     """Writes texts of several lines as blocks, and no aliases.
 
-    Quotes what this module or a reader of YAML 1.1 would take for something else than a text.
+    Quotes texts that this module or a reader of YAML 1.1 would take for another type.
     """
 
     def ignore_aliases(self, data: Any) -> bool:
@@ -89,11 +89,11 @@ def root_node(content: bytes, name: str, what: str, loader: type[NodeLoader] = N
     Args:
         content: the file.
         name: its name, for messages.
-        what: what it should be, for messages, such as `servo map`.
+        what: kind of document, for messages, such as `servo map`.
         loader: class that composes the nodes.
 
     Raises:
-        InvalidInput: naming the line, if it is no YAML, or has what is not read.
+        InvalidInput: naming the line, if it is not valid YAML, or has nodes that are refused.
     """
     try:
         return yaml.compose(content.decode("utf-8-sig"), Loader=loader)
@@ -102,8 +102,8 @@ def root_node(content: bytes, name: str, what: str, loader: type[NodeLoader] = N
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = "" if mark is None else f", line {mark.line + 1}"
-        parts = [getattr(error, attribute, None) for attribute in ("context", "problem")]
-        problem = ", ".join(filter(None, parts)) or "it has characters that YAML does not allow"
+        details = [getattr(error, attribute, None) for attribute in ("context", "problem")]
+        problem = ", ".join(filter(None, details)) or "it has characters that YAML does not allow"
         raise InvalidInput(f"{name}{line}: not valid YAML: {problem}") from error
     except RecursionError as error:
         raise InvalidInput(f"{name} is no {what}: it is nested too deeply") from error
@@ -115,7 +115,7 @@ def read_plain(content: bytes, name: str, what: str) -> Any:
     Args:
         content: the file.
         name: its name, for messages.
-        what: what it should be, for messages.
+        what: kind of document, for messages.
 
     Raises:
         InvalidInput: as `root_node`; also for a name that is given twice, and for other tags.

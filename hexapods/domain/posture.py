@@ -27,7 +27,7 @@ def has_fallen(robot: Robot, pose: Sequence[float], ground_m: float = 0.0) -> bo
 
 
 TILT = (2, 3, 4, 5, 6)
-"""Of a pose the numbers by which it has fallen: the height, and the rotation."""
+"""Indices in a pose of the height and the rotation, by which a robot has fallen or not."""
 
 
 def have_fallen(robot: Robot, tilts: FloatArray, ground_m: float = 0.0) -> NDArray[np.bool_]:
@@ -56,7 +56,7 @@ def heading_deg(pose: Sequence[float], start: Sequence[float]) -> float:
 
     Args:
         pose: torso position and rotation (wxyz), which may be followed by joint angles.
-        start: likewise, at the start.
+        start: the pose at the start.
     """
     turned = math.degrees(yaw_rad(pose[3:7]) - yaw_rad(start[3:7]))
     return (turned + 180) % 360 - 180

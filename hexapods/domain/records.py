@@ -1,7 +1,7 @@
 """Records as JSON: a dataclass is declared once, and what reads, writes and describes it follows.
 
 Requests, answers, the OpenAPI document, the database, archives and files all use the dataclass, by
-Pydantic. A type with a form of its own in JSON, such as a robot, says it by a `JsonForm`.
+Pydantic. A type with another form in JSON, such as a robot, declares it by a `JsonForm`.
 """
 
 import inspect
@@ -21,8 +21,8 @@ Schema = dict[str, Any]
 def refusal_in(errors: Iterable[Mapping[str, Any]]) -> InvalidInput | None:
     """Return the first `InvalidInput` among Pydantic's errors, None if there is none.
 
-    Pydantic keeps every `ValueError` that a function raises for its own list of errors. To the user
-    an `InvalidInput` is told as it was raised.
+    Pydantic keeps every `ValueError` that a function raises in its list of errors. The user gets an
+    `InvalidInput` as it was raised.
 
     Args:
         errors: as Pydantic's `errors()` returns them, with their context.
@@ -40,7 +40,7 @@ class Record:
         json_names: names in JSON of the fields that have another name there.
     """
 
-    # Of Pydantic, which is imported only where a record is read or written.
+    # Pydantic reads it; Pydantic is imported only where a record is read or written.
     __pydantic_config__: ClassVar[Mapping[str, Any]] = {
         "extra": "forbid",
         "json_schema_serialization_defaults_required": True,
@@ -76,14 +76,14 @@ def summary_of(record: type) -> str:
 
 
 def described_attributes(record: type) -> dict[str, str]:
-    """Return what the docstrings of a class and of its bases tell of their attributes, by name."""
+    """Return the descriptions of attributes in the docstrings of a class and its bases, by name."""
     descriptions: dict[str, str] = {}
     for base in reversed(record.__mro__):
         about = inspect.cleandoc(vars(base).get("__doc__") or "")
         section = about.partition("Attributes:\n")[2].partition("\n\n")[0]
         for item in re.split(r"^    (?=\S)", section, flags=re.MULTILINE)[1:]:
             names, _, text = item.partition(":")
-            # Of a field that may be left out in Python JSON has null.
+            # A field that is None in Python is null in JSON.
             text = re.sub(r"\bNone\b", "null", " ".join(text.split()))
             descriptions |= dict.fromkeys(names.split(", "), text)
     return descriptions
@@ -94,25 +94,26 @@ class JsonForm:
     """Annotation: how a type is read from JSON, written and described.
 
     Attributes:
-        read: converts what was given; it raises `InvalidInput` for what is not valid.
+        read: converts input; it raises `InvalidInput` for invalid input.
         write: converts to plain types.
-        given: JSON schema of what may be given, or a function that returns it.
-        sent: JSON schema of what is written; None if it is `given`.
+        input_schema: JSON schema of valid input, or a function that returns it.
+        output_schema: JSON schema of what is written; None if it is `input_schema`.
         takes_context: whether `read` and `write` take the context of `from_json` and `to_json` as
             their second argument; None where there is none.
     """
 
     read: Callable[..., Any]
     write: Callable[..., Any]
-    given: Schema | Callable[[], Schema]
-    sent: Schema | None = None
+    input_schema: Schema | Callable[[], Schema]
+    output_schema: Schema | None = None
     takes_context: bool = False
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         def describe(_: Any, schema_of: Any) -> Schema:
-            if schema_of.mode == "serialization" and self.sent is not None:
-                return dict(self.sent)
-            return dict(self.given() if callable(self.given) else self.given)
+            if schema_of.mode == "serialization" and self.output_schema is not None:
+                return dict(self.output_schema)
+            schema = self.input_schema
+            return dict(schema() if callable(schema) else schema)
 
         return plain_form(self.read, self.write, describe, takes_context=self.takes_context)
 
@@ -126,7 +127,7 @@ def plain_form(
     """Return Pydantic's schema of a type that is read and written by functions.
 
     Args:
-        read: converts what was given.
+        read: converts input.
         write: converts to plain types.
         describe: returns the JSON schema, as Pydantic's `pydantic_js_functions` do.
         takes_context: whether `read` and `write` take Pydantic's context as second argument.
@@ -153,7 +154,7 @@ def to_json(record: Any, context: Any = None) -> dict[str, Any]:
 
     Args:
         record: the record.
-        context: for the forms of its fields that take one; see `JsonForm`.
+        context: argument of the forms of its fields that take a context; see `JsonForm`.
     """
     adapter = _adapter(type(record))  # type: ignore[arg-type]  # mypy: no hash
     plain: dict[str, Any] = adapter.dump_python(record, mode="json", by_alias=True, context=context)
@@ -198,14 +199,14 @@ def from_json(kind: type[T], data: Any, **how: Any) -> T:
 
 
 def check_kept(record: T, context: Any = None) -> T:
-    """Return a record that can be saved and read again: to be called before what it decides.
+    """Return a record unless it cannot be saved and read again; to be called before it is used.
 
     Args:
         record: the record.
         context: for `to_json` and then for `from_json`.
 
     Raises:
-        InvalidInput: if it cannot, so that nothing is computed that could not be described.
+        InvalidInput: if it cannot, before results are computed that could not be saved with it.
     """
     try:
         read = from_json(type(record), to_json(record, context), context=context)

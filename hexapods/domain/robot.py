@@ -47,7 +47,7 @@ RANGES: dict[str, tuple[float, float]] = {
     "dt_s": (0.0005, 0.005),
 }
 MOUNT_RADIUS, AZIMUTH = (0.0, 2.0), (-360.0, 360.0)
-_OWN = (
+_LEG_OVERRIDES = (
     "coxa_m",
     "femur_m",
     "tibia_m",
@@ -59,15 +59,15 @@ _OWN = (
     "servo_kv",
     "servo_torque_nm",
 )
-"""Fields of a robot that a leg may have its own of."""
-_LINKS = tuple(name for name in _OWN if not name.startswith("servo_"))
+"""Fields of a robot that a leg may override."""
+_LINKS = tuple(name for name in _LEG_OVERRIDES if not name.startswith("servo_"))
 LEG_RANGES: dict[str, tuple[float, float]] = {
     "azimuth_deg": AZIMUTH,
     "radius_m": MOUNT_RADIUS,
     "z_m": (-1.0, 1.0),
     "yaw_deg": AZIMUTH,
     "foot_out_m": (0.001, 5.0),
-    **{name: RANGES[name] for name in _OWN},
+    **{name: RANGES[name] for name in _LEG_OVERRIDES},
 }
 _BOX = {"torso_length_m", "torso_width_m"}
 """Fields that a robot with a round torso does not have."""
@@ -76,7 +76,7 @@ _PLACE = ("x_m", "y_m")
 """Fields of a leg in a request that may stand for its azimuth and radius."""
 _COORDINATE = (-MOUNT_RADIUS[1], MOUNT_RADIUS[1])
 PLACED_RANGES = dict.fromkeys(_PLACE, _COORDINATE) | LEG_RANGES
-"""Of a leg in a request: its place in either form, and what is its own."""
+"""Limits of a leg's fields in a request: its place in either form, and its overrides."""
 
 
 def robot(value: str | Mapping[str, Any] | Robot, library: RobotLibrary = LIBRARY) -> Robot:
@@ -107,7 +107,7 @@ def robot(value: str | Mapping[str, Any] | Robot, library: RobotLibrary = LIBRAR
 
 
 def _changed(base: Robot, values: dict[str, Any]) -> Robot:
-    """Return a robot with the fields of an input that differ from another's."""
+    """Return a robot with the fields of an input in place of its own."""
     for name in ("n_legs", "mount_radius_m", "legs"):
         if name in values and values[name] is None:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
@@ -146,11 +146,11 @@ def changed_model(base: ModelRobot, values: Mapping[str, Any]) -> ModelRobot:
 def as_mapping(value: Robot) -> dict[str, Any]:
     """Return a robot as its preset or id and overrides, fit for JSON; the inverse of `robot`.
 
-    One without an id whose name is no preset's, as `Robot(name="x")`, differs from `stiff`: it is
-    read again without its name.
+    A robot without an id whose name is no preset's, as `Robot(name="x")`, is written as overrides
+    of `stiff`, without its name.
 
     Raises:
-        InvalidInput: if it is a model's, and has no document.
+        InvalidInput: for a robot from a file without a document.
     """
     name = value.name.removesuffix(_MODIFIED)
     if value.document is not None:
@@ -203,7 +203,7 @@ def read_document(data: bytes, name: str | None = None, library: RobotLibrary = 
     """Return the robot of a document, and add the document to a library.
 
     Raises:
-        DamagedFile: if it is none.
+        DamagedFile: if the bytes are not a document.
         InvalidInput: if its robot is not valid.
     """
     parsed = parse_document(data)
@@ -219,7 +219,7 @@ def parse_document(data: bytes) -> Robot:
         parsed: Robot = read_model_content(content)
         return replace(parsed, id=robot_documents.id_of(data), document=RobotDocument(data))
     values = content.pop("robot", None)
-    # All of it, so that no other document holds the same robot.
+    # It must be complete, so that no other document holds the same robot.
     if content or not isinstance(values, dict) or {*values} | _BOX != {*RANGES, "legs"}:
         raise DamagedFile("the document of a robot is damaged: it must have its legs and numbers")
     parsed = _changed(Robot(), values)
@@ -267,18 +267,18 @@ def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
 
 
 def written_out(value: Robot) -> dict[str, float | None]:
-    """Return every number of a robot that is not a leg's own; the torso of a cylinder is no box.
+    """Return every number of a robot but those of single legs; of a round torso the box is None.
 
-    Of a robot from a file the lengths and masses of links are left out: each link has its own.
+    Lengths and masses of links are left out for a robot from a file: each link has its own.
     """
     left_out = {"home_radius_m", *_LINKS} if isinstance(value, ModelRobot) else set()
     return {name: getattr(value, name) for name in RANGES if name not in left_out}
 
 
 def legs_written_out(value: Robot) -> list[dict[str, float]]:
-    """Return every number of each leg, as in a request: also those that are the robot's."""
+    """Return every number of each leg, as in a request, with those that all legs share."""
     is_from_file = isinstance(value, ModelRobot)
-    columns = {} if is_from_file else {name: value.of_legs(name) for name in _OWN}
+    columns = {} if is_from_file else {name: value.of_legs(name) for name in _LEG_OVERRIDES}
     return [
         {
             "x_m": leg.radius_m * math.cos(math.radians(leg.azimuth_deg)),
@@ -359,7 +359,7 @@ def _limited(name: str, value: object, limits: tuple[float, float]) -> float:
     """Return a number of the input.
 
     Raises:
-        InvalidInput: if it is none, or out of its limits.
+        InvalidInput: if it is not a number, or out of its limits.
     """
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidInput(f"robot.{name} must be a number, not {value!r}")
@@ -399,7 +399,7 @@ _COUNTED: Schema = {
     "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS},
     **_numbers({"mount_radius_m": MOUNT_RADIUS}),
 }
-_GIVEN: Schema = {
+_INPUT: Schema = {
     "type": "object",
     "properties": {
         "preset": _PRESET,
@@ -418,15 +418,15 @@ _GIVEN: Schema = {
 _ID: Schema = {"type": "string", "pattern": f"^[0-9a-f]{{{robot_documents.ID_DIGITS}}}$"}
 _NAME: Schema = {"type": "string", "maxLength": MAX_NAME}
 _STORED: Schema = {
-    **_GIVEN,
+    **_INPUT,
     "properties": {
         "id": _ID,
         "name": _NAME,
-        **{name: shape for name, shape in _GIVEN["properties"].items() if name != "preset"},
+        **{name: shape for name, shape in _INPUT["properties"].items() if name != "preset"},
     },
     "required": ["id"],
 }
-_SENT: Schema = {
+_OUTPUT: Schema = {
     "type": "object",
     "description": "A preset, or the id and the name of a stored robot, and by name the parts that "
     "differ from it.",
@@ -452,7 +452,9 @@ def _write(value: Robot, library: RobotLibrary | None) -> dict[str, Any]:
 
 AnyRobot = Annotated[
     Robot,
-    JsonForm(_read, _write, {"anyOf": [_PRESET, _ID, _GIVEN, _STORED]}, _SENT, takes_context=True),
+    JsonForm(
+        _read, _write, {"anyOf": [_PRESET, _ID, _INPUT, _STORED]}, _OUTPUT, takes_context=True
+    ),
 ]
 """A robot: in requests a preset's name or a stored robot's id, too.
 

@@ -17,9 +17,9 @@ from hexapods.domain.json_lists import check_lists
 ID_DIGITS = 16
 FORMAT = "hexapods-robot-1"
 MAX_BYTES = 8 << 20
-"""Length of a document."""
+"""Maximum length of a document."""
 ENDING = ".json"
-"""Of the files in a folder; their names are ids."""
+"""Suffix of the files in a folder, whose names are ids."""
 _ID = re.compile(rf"[0-9a-f]{{{ID_DIGITS}}}", re.ASCII)
 
 
@@ -46,7 +46,7 @@ def decode(data: bytes, label: str = "the document of a robot") -> dict[str, Any
 
     Raises:
         OtherFormat: if it is of another version.
-        DamagedFile: if it is none in canonical JSON.
+        DamagedFile: if it is not a document in canonical JSON.
     """
     try:
         if len(data) > MAX_BYTES:

@@ -16,7 +16,7 @@ class About(NamedTuple):
     """Data of a stored robot beside its document.
 
     Attributes:
-        name: by which people know it.
+        name: its name for users.
         gait: one that suits it, as in JSON; None if none is known.
     """
 
@@ -27,23 +27,23 @@ class About(NamedTuple):
 class RobotLibrary:
     """The stored robots that a robot's id may refer to. Thread-safe.
 
-    A document is in memory, or in a file of one of the folders, which is read when it is asked for.
-    A library may extend another one: it finds what that finds, and adds nothing to it.
+    A document is in memory, or in a file of one of the folders, which is read when it is needed. A
+    library may extend another library, whose robots it finds too, and which it never changes.
 
     It can be pickled, so that another process finds the same robots.
 
     Attributes:
-        documents: those in memory, by id.
-        descriptions: what is stored beside documents, by id.
-        folders: where documents are found.
+        documents: documents in memory, by id.
+        descriptions: data stored beside documents, by id.
+        folders: folders with files of documents.
     """
 
     def __init__(self, base: "RobotLibrary | None" = None, documents: Iterable[bytes] = ()) -> None:
-        """Begin with some documents, which are not validated.
+        """Create a library with documents, which are not validated.
 
         Args:
             base: the library that this one extends.
-            documents: of robots that `base` need not have.
+            documents: documents in memory, beside those of `base`.
         """
         self._base = base
         self._lock = threading.RLock()
@@ -54,8 +54,8 @@ class RobotLibrary:
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
-            kept = "_base", "documents", "descriptions", "folders"
-            return {name: vars(self)[name] for name in kept}
+            names = "_base", "documents", "descriptions", "folders"
+            return {name: vars(self)[name] for name in names}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         vars(self).update(state, _lock=threading.RLock(), _cached={})
@@ -68,7 +68,7 @@ class RobotLibrary:
         return robot_id
 
     def add_all(self, other: "RobotLibrary") -> None:
-        """Find what another library finds, apart from those that it extends."""
+        """Add the documents, descriptions and folders of another library, but not of its base."""
         with self._lock:
             self.documents.update(other.documents)
             self.descriptions.update(other.descriptions)
@@ -92,12 +92,12 @@ class RobotLibrary:
                     values.pop(robot_id, None)
 
     def add_folder(self, folder: Path) -> None:
-        """Find documents in this folder, and in the folders in it."""
+        """Add a folder with files of documents, which may be one folder deeper."""
         with self._lock:
             self.folders.append(folder)
 
     def remove_folder(self, folder: Path) -> None:
-        """Find documents in this folder no longer; to be called once for each `add_folder`."""
+        """Remove a folder; to be called once for each `add_folder`."""
         with self._lock:
             self.folders.remove(folder)
 
@@ -159,15 +159,15 @@ class RobotLibrary:
     def _unknown(self, robot_id: str, name: str | None) -> str:
         label = "" if name is None else f" ({name[:100]})"
         stored = sorted(f"{name} ({robot_id})" for robot_id, name in self.names().items())
-        here = "no robot is stored here"
+        available = "no robot is stored here"
         if stored:
-            here = f"stored here: {', '.join(stored[:_MAX_LISTED])}"
+            available = f"stored here: {', '.join(stored[:_MAX_LISTED])}"
         return (
             f"there is no stored robot {str(robot_id)[:40]!r}{label}; import its document or an "
             "archive of a run with it: `hexapods robots import FILE`, POST /api/v1/robots, or "
-            f"hx.load_robot(FILE); {here}"
+            f"hx.load_robot(FILE); {available}"
         )
 
 
 LIBRARY = RobotLibrary()
-"""The library of this process: robots are found in it wherever no other library is given."""
+"""The library of this process, the default wherever a function takes a library."""

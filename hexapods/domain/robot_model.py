@@ -29,12 +29,12 @@ MIN_JOINTS, MAX_JOINTS = 2, 6
 """Joints of a leg."""
 MAX_LINKS = 200
 MAX_GEOMS = 1000
-"""Of all links together."""
+"""Maximum of geoms of all links together."""
 MAX_TRIANGLES = 60_000
-"""Of all meshes together."""
+"""Maximum of triangles of all meshes together."""
 JOINT_NAME = re.compile(r"[A-Za-z0-9_.-]{1,40}", re.ASCII)
 MAX_SIZE_M = 10.0
-"""Of a geom or a mesh."""
+"""Largest coordinate of a mesh, and largest size of a geom."""
 MAX_ANGLE_RAD = 7.0
 """Largest limit of a joint, more than a turn."""
 _UNIT = 1e-6
@@ -47,8 +47,8 @@ class ModelGeom(Record):
 
     Attributes:
         kind: as MuJoCo calls it.
-        size_m: as in MuJoCo: a radius; a radius and half a length along z; or half sides. What
-            the kind does not need is 0.
+        size_m: as in MuJoCo: a radius; a radius and half a length along z; or half sides.
+            Numbers that the kind does not need are 0.
         at_m: its centre in the frame of its link.
         wxyz: its rotation in the frame of its link.
     """
@@ -78,7 +78,7 @@ class ModelMesh(Record):
         """Return vertices (n, 3) [m] and faces (m, 3).
 
         Raises:
-            InvalidInput: if they are not what their description says.
+            InvalidInput: if they are not valid arrays of that number of triangles.
         """
         try:
             vertices = np.frombuffer(b64decode(self.vertices, validate=True), "<f4").reshape(-1, 3)
@@ -129,15 +129,15 @@ class ModelLink(Record):
         name: its name in the file, or a number.
         parent: index of its parent among the links, which comes before it; −1 for the torso.
         leg: number of its leg, from 1; 0 for the torso and what is fixed to it.
-        at_m: origin of its frame in that of its parent; of the torso (0, 0, 0).
+        at_m: origin of its frame in that of its parent; (0, 0, 0) for the torso.
         wxyz: rotation of its frame against that of its parent.
         mass_kg: its mass; at least 1e-6.
         center_m: its centre of mass in its frame.
         inertia: about the centre of mass along the axes of its frame [kg·m²]: xx, yy, zz, xy, xz,
             yz.
-        joint: by which it turns; None if it is fixed to its parent.
-        geoms: what touches the ground.
-        mesh: what is drawn; None to draw its geoms.
+        joint: the hinge by which it turns; None if it is fixed to its parent.
+        geoms: shapes that touch the ground.
+        mesh: drawn shape; None to draw its geoms.
     """
 
     name: str
@@ -176,12 +176,12 @@ class RobotModel(Record):
     links of a leg are in a row, from the torso outward.
 
     Attributes:
-        links: the torso, then leg by leg.
-        feet: leg by leg.
+        links: the torso, then the links of each leg.
+        feet: the foot of each leg.
 
     Raises:
-        InvalidInput: if they are not a robot with 3 to 12 legs of 2 to 6 joints each, all of
-            which move their foot.
+        InvalidInput: unless it has 3 to 12 legs of 2 to 6 joints each, all of which move their
+            foot.
     """
 
     links: tuple[ModelLink, ...]
@@ -206,7 +206,7 @@ class RobotModel(Record):
         return hash(self.digest)
 
     def links_of(self, leg: int) -> list[ModelLink]:
-        """Return the links of a leg, counted from 1; of 0 the torso and what is fixed to it."""
+        """Return the links of a leg, counted from 1; for 0 the torso and links fixed to it."""
         return [link for link in self.links if link.leg == leg]
 
     def joints_of(self, leg: int) -> list[ModelJoint]:

@@ -45,7 +45,7 @@ class Setting:
         title: label of its control.
         help: description, one sentence.
         symbol: conventional symbol, such as α.
-        quantity: the part of the title that the symbol stands for, if it is not the whole title:
+        quantity: the word of the title that the symbol stands for, if it is not the whole title:
             `exploration` of `Final exploration`, which is `Final ε` in short.
         phrase: format string for a value in a report, such as `{} divisions`; by default the
             symbol or title, and the value.
@@ -75,7 +75,7 @@ class Setting:
         def describe(_: Any, schema_of: Any) -> dict[str, Any]:
             return {**schema_of(native), "title": self.title, "description": self.help}
 
-        return plain_form(lambda given: given, lambda value: value, describe)
+        return plain_form(lambda value: value, lambda value: value, describe)
 
 
 @dataclass(frozen=True)
@@ -122,12 +122,12 @@ class DeclaredSetting:
     @property
     def low(self) -> float | None:
         """Lower limit, inclusive or exclusive; None without one."""
-        return next((bound_of(x) for x in self.limits if isinstance(x, Ge | Gt)), None)
+        return next((bound_of(limit) for limit in self.limits if isinstance(limit, Ge | Gt)), None)
 
     @property
     def high(self) -> float | None:
         """Upper limit, inclusive or exclusive; None without one."""
-        return next((bound_of(x) for x in self.limits if isinstance(x, Le | Lt)), None)
+        return next((bound_of(limit) for limit in self.limits if isinstance(limit, Le | Lt)), None)
 
     @property
     def excludes_low(self) -> bool:
@@ -142,18 +142,18 @@ class DeclaredSetting:
     @cached_property
     def valid(self) -> str:
         """Description of the valid values for error messages, to follow "must be"."""
-        parts = list(self.choices)
+        forms = list(self.choices)
         if self.is_whole:
             # The unit of a count is clear from its name.
-            parts.append(" ".join([self._whole_number(), *self._range()]))
+            forms.append(" ".join([self._whole_number(), *self._range()]))
         elif self.is_number:
             unit = [self.about.unit] if self.about.unit else []
-            parts.append(" ".join(["a number", *self._range(), *unit]))
+            forms.append(" ".join(["a number", *self._range(), *unit]))
         if bool in self.kinds:
-            parts.append("true or false")
+            forms.append("true or false")
         if str in self.kinds:
-            parts.append(f"text of at most {MAX_TEXT} characters")
-        return ", or ".join(parts)
+            forms.append(f"text of at most {MAX_TEXT} characters")
+        return ", or ".join(forms)
 
     def check(self, value: Any) -> None:
         """Check that a value is valid.
@@ -212,14 +212,15 @@ class DeclaredSetting:
         return value
 
     def _whole_number(self) -> str:
-        multiple = next((bound_of(x) for x in self.limits if isinstance(x, MultipleOf)), None)
+        multiples = (bound_of(limit) for limit in self.limits if isinstance(limit, MultipleOf))
+        multiple = next(multiples, None)
         if multiple is None:
             return "a whole number"
         number = "an even number" if multiple == 2 else f"a multiple of {multiple:g}"
         return f"{number} of {self.about.unit}" if self.about.unit else number
 
     def _range(self) -> list[str]:
-        low, high = (None if x is None else f"{x:,.15g}" for x in (self.low, self.high))
+        low, high = (None if bound is None else f"{bound:,.15g}" for bound in (self.low, self.high))
         if low is None and high is None:
             return []
         if high is None:
@@ -263,11 +264,11 @@ def declared_parameters(
 def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple[Parameter, Any]]:
     """Return the parameters with their annotations, those of base classes first."""
     parameters: dict[str, tuple[Parameter, Any]] = {}
-    for function_ in _call_chain(function, method):
-        hints = _hints(function_)
+    for called in _call_chain(function, method):
+        hints = _hints(called)
         named = {
             name: (parameter, hints.get(name))
-            for name, parameter in inspect.signature(function_).parameters.items()
+            for name, parameter in inspect.signature(called).parameters.items()
             if parameter.kind not in _VARIADIC and name != "self"
         }
         parameters = {**named, **parameters}
@@ -275,9 +276,9 @@ def _parameters(function: Callable[..., Any], method: str) -> Mapping[str, tuple
 
 
 def _call_chain(function: Callable[..., Any], method: str) -> list[Callable[..., Any]]:
-    """Return the functions that a call passes through, each handing on `**` to the next.
+    """Return the functions that a call passes through, each of which passes `**` to the next.
 
-    For a class these are its method and those of the bases; otherwise the function alone.
+    For a class these are its method and those of its bases; otherwise the function alone.
     """
     if not isinstance(function, type):
         return [function]
@@ -328,9 +329,9 @@ def declare(name: str, annotation: Any, default: Any = REQUIRED) -> DeclaredSett
 
 
 def required(setting: DeclaredSetting) -> DeclaredSetting:
-    """Return an optional setting of a function as one that must be given, and not as None."""
-    parts = get_args(setting.annotation) if _is_union(setting.annotation) else ()
-    kinds = tuple(kind for kind in parts if kind is not NoneType) or (setting.annotation,)
+    """Return an optional setting of a function as a required one, which must not be None."""
+    members = get_args(setting.annotation) if _is_union(setting.annotation) else ()
+    kinds = tuple(kind for kind in members if kind is not NoneType) or (setting.annotation,)
     return replace(setting, annotation=Union[kinds], default=REQUIRED)  # noqa: UP007
 
 
@@ -355,16 +356,16 @@ class SettingValues(Mapping[str, V]):
         """Read and write a JSON object; its values are lists if those of the type are tuples."""
         are_lists = get_origin(next(iter(get_args(source)), None)) is tuple
 
-        def read(value_: Any) -> "SettingValues[Any]":
-            if isinstance(value_, SettingValues):
-                return value_
-            if not isinstance(value_, Mapping):
-                raise InvalidInput(f"settings are given by name, not as {value_!r}"[:200])
-            for name, value in value_.items():
+        def read(data: Any) -> "SettingValues[Any]":
+            if isinstance(data, SettingValues):
+                return data
+            if not isinstance(data, Mapping):
+                raise InvalidInput(f"settings are given by name, not as {data!r}"[:200])
+            for name, value in data.items():
                 if isinstance(value, list | tuple) != are_lists:
                     kind = "a list of values" if are_lists else "a number, text, true or false"
                     raise InvalidInput(f"{name} must be {kind}")
-            values: dict[str, Any] = {k: tuple(v) if are_lists else v for k, v in value_.items()}
+            values: dict[str, Any] = {k: tuple(v) if are_lists else v for k, v in data.items()}
             return cls(values)
 
         def write(values: "SettingValues[Any]") -> dict[str, Any]:
@@ -399,7 +400,7 @@ class SettingValues(Mapping[str, V]):
 def complete(
     settings: Mapping[str, DeclaredSetting], values: Mapping[str, Any], owner: str
 ) -> SettingValues[Value]:
-    """Validate given values, and add the defaults of the others.
+    """Validate values of settings, and add the defaults of those without a value.
 
     Args:
         settings: the declarations by name, which determine the order of the values.
@@ -428,8 +429,8 @@ def complete(
 
 def _setting_of(annotation: Any) -> Setting | None:
     """Return the `Setting` in an annotation; in an optional one it is one level deeper."""
-    parts = get_args(annotation) if _is_union(annotation) else (annotation,)
-    metadata = (item for part in parts for item in getattr(part, "__metadata__", ()))
+    members = get_args(annotation) if _is_union(annotation) else (annotation,)
+    metadata = (item for member in members for item in getattr(member, "__metadata__", ()))
     return next((item for item in metadata if isinstance(item, Setting)), None)
 
 

@@ -1,4 +1,4 @@
-"""Short `repr`s of dataclasses: what differs from the defaults, and sizes in place of contents."""
+"""Short `repr`s of dataclasses: fields that differ from the defaults, and sizes of long values."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 MAX_REPR = 300
-"""Characters of a `repr` that people read, at most."""
+"""Most characters of a `repr`."""
 _MAX_VALUE = 100
 
 
 def short_repr(record: Any) -> str:
     """Return the `repr` of a dataclass with its name and the fields that differ from the defaults.
 
-    Arrays, and what is long, are told by type and size.
+    Arrays and long values are shown by their type and size.
     """
     shown = [field for field in fields(record) if field.repr and _is_shown(record, field)]
     values = ", ".join(f"{field.name}={_short(getattr(record, field.name))}" for field in shown)

@@ -51,10 +51,10 @@ class Motion(NamedTuple):
     """Torso position [m], its rotation (quaternion wxyz), joint angles [rad],
     (k, 7 + joints)."""
     torque_nm: NDArray[np.float16] | None = None
-    """Of each servo its largest torque by magnitude since the frame before [N·m], (k, joints);
-    None if it was not recorded, or nothing has servos."""
+    """Largest torque by magnitude of each servo since the frame before [N·m], (k, joints); None if
+    it was not recorded, or the simulator has no servos."""
     work_j: NDArray[np.float32] | None = None
-    """Positive mechanical work of all servos since the frame before [J], (k,); likewise None."""
+    """Positive mechanical work of all servos since the frame before [J], (k,); None as above."""
 
     def __repr__(self) -> str:
         return f"<Motion of {len(self.time_s)} poses>"
@@ -115,14 +115,14 @@ class Simulator(Protocol[S]):
         Args:
             states: n states.
             actions: one action for each.
-            as_of: the step whose conditions hold for all; None for each state's own step.
+            as_of: the step whose conditions hold for all states; None for each state's own step.
 
         Raises:
             Diverged: if the physics diverges.
         """
 
     def estimate(self, state: S, error_m: FloatArray) -> S:
-        """Return a state as sensors with these errors tell it: the feet are off, all else is exact.
+        """Return a state as sensors measure it: with errors of the feet, otherwise exact.
 
         Args:
             state: the true state.

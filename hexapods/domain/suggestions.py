@@ -1,4 +1,4 @@
-"""The foot grid with which a robot from a file begins: it suits its legs."""
+"""Default size of the foot grid of a robot from a file, by the length and reach of its legs."""
 
 from hexapods.domain.body import Robot
 from hexapods.domain.errors import Unreachable
@@ -11,15 +11,16 @@ from hexapods.domain.model_robot import ModelRobot, leg_length_m
 _GRID_SHARE = 0.2
 """Side of the grid of robots that walk well, relative to the distance of foot and first joint."""
 _MARGIN = 1.25
-"""How much larger than its grid a leg's reach is."""
+"""Least ratio of a leg's reach to its grid."""
 _SMALLER = 0.8
+"""Factor by which the side is reduced until all legs reach the grid."""
 
 
 def usual_grid_side_m(robot: Robot, gait: str | GaitSpec) -> float:
     """Return the side of a foot grid that all legs of a robot reach with a margin [m].
 
-    It is as large as suits the size of the legs of a robot from a file, else the usual one; the
-    least that there is, if they reach none.
+    It is proportional to the length of the legs of a robot from a file, and the paper's for any
+    other robot; `MIN_SIDE_M` if the legs do not reach a larger one.
     """
     if not isinstance(robot, ModelRobot):
         return FootGrid.side_m

@@ -1,7 +1,7 @@
 """Sums of floats, with the same bits in every Python.
 
-Since Python 3.12 the built-in `sum` carries along what rounding loses of floats, so that its last
-bit is another one than in 3.11. `tests/domain/test_sums.py` refuses it for all but whole numbers.
+Since Python 3.12 the built-in `sum` compensates the rounding errors of floats, so that its last bit
+differs from that of 3.11. `tests/domain/test_sums.py` refuses it for all but whole numbers.
 """
 
 from collections.abc import Iterable

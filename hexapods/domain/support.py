@@ -1,4 +1,4 @@
-"""Static stability: how far the centre of mass is inside the polygon of the feet that stand.
+"""Static stability: distance of the centre of mass from the edge of the support polygon.
 
 A robot stands while its centre of mass is over the support polygon, the convex hull of the feet on
 the ground (McGhee and Frank 1968, "On the stability properties of quadruped creeping gaits").
@@ -16,7 +16,7 @@ Point = tuple[float, float]
 STANDS_M = -1e-6
 """Least margin with which a robot stands: of two feet it is 0, but for rounding."""
 _MAX_LEGS_OF_THREE_GROUPS = 8
-"""Of more legs there are too many divisions into three groups to try."""
+"""With more legs there are too many divisions into three groups to try."""
 
 
 def margin_m(center: Point, feet: Iterable[Point]) -> float:
@@ -101,7 +101,7 @@ class Support:
     def steadiest_groups(self) -> tuple[Group, ...]:
         """Return the fewest groups with which the robot stands, and of those the steadiest.
 
-        Neighbours are in different groups where that is as steady. Of many legs only two groups
+        Neighbours are in different groups where that is as steady. For many legs only two groups
         are tried, then each leg alone.
         """
         count = len(self.homes_m)
@@ -120,7 +120,7 @@ class Support:
 
 def _turns(groups: Sequence[Group]) -> int:
     """Return how many neighbours around the body are of different groups."""
-    of_leg = [group for _, group in sorted((leg, group_) for group_ in groups for leg in group_)]
+    of_leg = [group for _, group in sorted((leg, legs) for legs in groups for leg in legs)]
     return sum(group is not other for group, other in pairwise([*of_leg, of_leg[0]]))
 
 

@@ -23,10 +23,10 @@ def rough_heights(rough: Rough) -> FloatArray:
     coarse_count = round(ROUGH_PERIOD_M / _BUMP_M)
     coarse = np.random.default_rng(rough.seed).random((coarse_count, coarse_count))
     fine = round(_BUMP_M / ROUGH_CELL_M)
-    share = (1 - np.cos(np.pi * np.arange(fine) / fine)) / 2
+    weights = (1 - np.cos(np.pi * np.arange(fine) / fine)) / 2
     for axis in (0, 1):
         after = np.roll(coarse, -1, axis)
-        stacked = [coarse + part * (after - coarse) for part in share]
+        stacked = [coarse + weight * (after - coarse) for weight in weights]
         coarse = np.stack(stacked, axis + 1)
         shape = (-1, coarse.shape[-1]) if axis == 0 else (coarse.shape[0], -1)
         coarse = coarse.reshape(shape)

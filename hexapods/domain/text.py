@@ -20,14 +20,14 @@ TAGS = (
 )
 """Description of valid tags, for messages."""
 TAG_SEPARATOR = ","
-"""Between tags that are written in one line."""
+"""Separator of tags that are written in one line."""
 MAX_NOTES = 4_000
 NOTES = (
     f"text of at most {MAX_NOTES:,} characters, without control characters but line breaks and tabs"
 )
 """Description of valid notes, for messages."""
 MAX_MESSAGE = 10_000
-"""Characters kept of an error; exceptions of user-defined agents may be longer."""
+"""Most characters of a stored error; exceptions of user-defined agents may be longer."""
 NOTES_CONTROLS = "\t\n\r"
 """Control characters that notes may have."""
 _INVISIBLE = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
@@ -117,7 +117,7 @@ def storable(text: str) -> str:
 
 
 def message(text: str) -> str:
-    """Return the message of an error as it is kept: storable, and cut where it is too long."""
+    """Return the message of an error as it is stored, cut where it is too long."""
     whole = storable(text)
     return whole if len(whole) <= MAX_MESSAGE else f"{whole[: MAX_MESSAGE - 1]}…"
 

@@ -35,8 +35,8 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
     """Draw a robot as it could be built: each value uniformly within a share of its design.
 
     Each leg is mounted at its own angle, which is off by up to that share of the angle between two
-    neighbouring legs. Values stay within `RANGES`. The robot's controller and its sensors count on
-    the robot as designed (as every real one's do), so that the built one reaches the same foot
+    neighbouring legs. Values stay within `RANGES`. Controller and sensors use the kinematics of the
+    robot as designed, as those of a real robot do, so that the built one reaches the same foot
     grid: it is commanded the same joint angles, within the same limits.
 
     Args:
@@ -54,9 +54,10 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
     if share == 0:
         return robot
     if isinstance(robot, ModelRobot):
-        by = [1 + share * deviation for deviation in drawn[: len(names)]]
+        model_factors = [1 + share * deviation for deviation in drawn[: len(names)]]
         turn_deg = share * _FULL_TURN_DEG / len(robot.legs)
-        return _model_as_built(robot, by, [turn_deg * off for off in drawn[len(names) :]])
+        turns_deg = [turn_deg * deviation for deviation in drawn[len(names) :]]
+        return _model_as_built(robot, model_factors, turns_deg)
     varied: dict[str, Any] = {
         name: _within(getattr(robot, name) * (1 + share * deviation), RANGES[name])
         for name, deviation in zip(VARIED, drawn, strict=False)
@@ -64,25 +65,25 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
     apart_deg = _FULL_TURN_DEG / len(robot.legs)
     factors = {name: 1 + share * deviation for name, deviation in zip(VARIED, drawn, strict=False)}
     legs = tuple(
-        _as_built(leg, factors, share * apart_deg * off)
-        for leg, off in zip(robot.legs, drawn[len(VARIED) :], strict=True)
+        _as_built(leg, factors, share * apart_deg * deviation)
+        for leg, deviation in zip(robot.legs, drawn[len(VARIED) :], strict=True)
     )
     return replace(robot, legs=legs, **varied)
 
 
 def _model_as_built(
-    robot: ModelRobot, factors: Sequence[float], off_deg: Sequence[float]
+    robot: ModelRobot, factors: Sequence[float], turns_deg: Sequence[float]
 ) -> ModelRobot:
     """Return a robot from a file that deviates.
 
     Args:
         robot: the robot as designed.
-        factors: of `VARIED_OF_MODELS`.
-        off_deg: by how much each leg is turned about the vertical through its first joint.
+        factors: factor of each quantity of `VARIED_OF_MODELS`.
+        turns_deg: angle by which each leg is turned about the vertical through its first joint.
     """
     torso, legs, kp, kv, friction = factors
     links = []
-    for link in turned_mounts(robot.model, off_deg).links:
+    for link in turned_mounts(robot.model, turns_deg).links:
         factor = legs if link.leg else torso
         xx, yy, zz, xy, xz, yz = (factor * moment for moment in link.inertia)
         varied_link = replace(link, mass_kg=factor * link.mass_kg, inertia=(xx, yy, zz, xy, xz, yz))
@@ -97,12 +98,20 @@ def _model_as_built(
     )
 
 
-def _as_built(leg: LegMount, factors: Mapping[str, float], off_deg: float) -> LegMount:
+def _as_built(leg: LegMount, factors: Mapping[str, float], turn_deg: float) -> LegMount:
     """Return a leg whose own numbers deviate as the robot's do, mounted at another angle."""
     angles = {"azimuth_deg": leg.azimuth_deg, "yaw_deg": leg.yaw_deg}
-    turned = {n: _within(at + off_deg, AZIMUTH) for n, at in angles.items() if at is not None}
-    dimensions = {name: getattr(leg, name, None) for name in factors}
-    varied = {n: _within(v * factors[n], RANGES[n]) for n, v in dimensions.items() if v is not None}
+    turned = {
+        name: _within(angle + turn_deg, AZIMUTH)
+        for name, angle in angles.items()
+        if angle is not None
+    }
+    overrides = {name: getattr(leg, name, None) for name in factors}
+    varied = {
+        name: _within(value * factors[name], RANGES[name])
+        for name, value in overrides.items()
+        if value is not None
+    }
     return replace(leg, **turned, **varied)
 
 

@@ -1,7 +1,7 @@
-"""Worlds: what a robot walks in and what has happened to it.
+"""Worlds: the disturbances of a walk, of the ground and of the robot.
 
-A `World` is a frozen value beside the robot. `World.as_of(step)` are the conditions of one step: a
-world whose disturbances all hold from the start, by which physics models are compiled and cached.
+A `World` is a frozen value. `World.as_of(step)` returns the conditions of one step: a world whose
+disturbances all hold from the start, by which physics models are compiled and cached.
 """
 
 from bisect import bisect_right
@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 from hexapods.domain.disturbance_documents import (
-    SENT,
+    DISTURBANCE_SCHEMA,
     as_mapping,
     as_text,
     disturbance_from,
@@ -39,16 +39,16 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.short_repr import short_repr
 
 MAX_DISTURBANCES = 20
-"""Maximum that a request may start with."""
+"""Maximum of disturbances in a request."""
 MAX_IN_A_RUN = 200
-"""Maximum with all that happens while it runs."""
+"""Maximum of disturbances in a run, with those that are added while it runs."""
 KINEMATIC_KINDS = (SensorNoise.kind,)
-"""Kinds that the kinematic simulator knows, which has no ground and no servos."""
+"""Kinds that the kinematic simulator simulates, which has no ground and no servos."""
 D = TypeVar("D", bound=Disturbance)
 
 
 def is_simulated(kind: str, simulator: str) -> bool:
-    """Whether a simulator knows a kind of disturbance."""
+    """Whether a simulator simulates a kind of disturbance."""
     return simulator != "kinematic" or kind in KINEMATIC_KINDS
 
 
@@ -56,7 +56,7 @@ def is_simulated(kind: str, simulator: str) -> bool:
 class World:
     """Disturbances of a walk. The default is flat ground and a robot as it was built.
 
-    A later disturbance replaces an earlier one of the same thing, such as of a leg.
+    A later disturbance replaces an earlier one of the same part, such as a leg.
 
     Raises:
         InvalidInput: if two disturbances contradict each other.
@@ -67,7 +67,7 @@ class World:
     disturbances: Sequence[Disturbance] = ()
 
     def __post_init__(self) -> None:
-        disturbances: Any = self.disturbances  # as a user gave them
+        disturbances: Any = self.disturbances  # not validated
         if not isinstance(disturbances, list | tuple) or not all(
             isinstance(d, Disturbance) for d in disturbances
         ):
@@ -89,10 +89,10 @@ class World:
         return World((*self.disturbances, *more))
 
     def check(self, robot: Robot, simulator: str, steps: int | None = None) -> None:
-        """Check that a simulator can show it to a robot, in a walk of so many steps.
+        """Check that a simulator can simulate it with a robot, in a walk of so many steps.
 
         Raises:
-            InvalidInput: if not; the message names what is valid.
+            InvalidInput: if it cannot; the message names what is valid.
         """
         if len(self.disturbances) > MAX_IN_A_RUN:
             raise InvalidInput(
@@ -130,47 +130,50 @@ class World:
         return tuple(self._conditions_at(step) for step in (0, *self.change_steps))
 
     def as_of(self, step: int) -> "World":
-        """Return the conditions of a step as a world that stays so: leg by leg, without pushes."""
+        """Return the conditions of a step: what holds then, leg by leg, without pushes."""
         if not self.disturbances:
             return self
         return self._conditions[bisect_right(self.change_steps, step)]
 
     def _conditions_at(self, step: int) -> "World":
         newest: dict[Key, Disturbance] = {}
-        for one in sorted(self.disturbances, key=lambda disturbance: disturbance.at_step):
-            if not one.holds_at(step) or not one.lasts:
+        for disturbance in sorted(self.disturbances, key=lambda entry: entry.at_step):
+            if not disturbance.holds_at(step) or not disturbance.lasts:
                 continue
-            for covered in [key for key in newest if _covers(one, key)]:
+            for covered in [key for key in newest if _covers(disturbance, key)]:
                 del newest[covered]
-            for key, part in one.parts().items():
-                newest[key] = replace(part, at_step=0, until_step=None)
-        lasting = [disturbance for disturbance in newest.values() if not disturbance.repairs]
-        return _conditions(lasting)
+            for key, of_part in disturbance.parts().items():
+                newest[key] = replace(of_part, at_step=0, until_step=None)
+        return _conditions(entry for entry in newest.values() if not entry.repairs)
 
     def then(self, disturbance: Disturbance) -> "World":
-        """Return the world in which something else happens, after what begins in the same step.
+        """Return the world with one more disturbance, after those that begin in the same step.
 
-        What is of the same thing replaces that; of several pushes in a step each acts.
+        It replaces disturbances of the same part that begin in this step, but no push.
 
         Raises:
-            InvalidInput: if it contradicts the others.
+            InvalidInput: if it contradicts another disturbance.
         """
         earlier: list[Disturbance] = []
         for other in self.disturbances:
-            parts = other.parts()
-            is_undone = other.at_step == disturbance.at_step and disturbance.lasts
-            rest = [p for k, p in parts.items() if not (is_undone and _covers(disturbance, k))]
-            earlier += [other] if len(rest) == len(parts) else rest
+            by_part = other.parts()
+            may_replace = other.at_step == disturbance.at_step and disturbance.lasts
+            remaining = [
+                of_part
+                for key, of_part in by_part.items()
+                if not (may_replace and _covers(disturbance, key))
+            ]
+            earlier += [other] if len(remaining) == len(by_part) else remaining
         return World((*earlier, disturbance))
 
     @property
     def at_start(self) -> "World":
-        """Disturbances that hold from the start, for good and as given; without pushes."""
-        early = (d for d in self.disturbances if d.at_step == 0 and d.lasts)
-        return World(tuple(replace(disturbance, until_step=None) for disturbance in early))
+        """Disturbances that begin at the start, without their ends and without pushes."""
+        at_start = (entry for entry in self.disturbances if entry.at_step == 0 and entry.lasts)
+        return World(tuple(replace(entry, until_step=None) for entry in at_start))
 
     def later(self, steps: int) -> "World":
-        """Return the world in which all of this happens so many steps later."""
+        """Return the world whose disturbances begin and end so many steps later."""
         return World(
             tuple(
                 replace(
@@ -209,10 +212,10 @@ UNDISTURBED = World()
 
 
 def check_ends(disturbances: Iterable[Disturbance], steps: int) -> None:
-    """Check what a user asks for: that what ends does so in the run, of so many steps.
+    """Check that disturbances which end do so within a run of so many steps.
 
     Raises:
-        InvalidInput: if not.
+        InvalidInput: if one ends after it.
     """
     for disturbance in disturbances:
         if disturbance.until_step is not None and disturbance.until_step > steps:
@@ -231,27 +234,27 @@ def world(data: Iterable[Mapping[str, Any]] | World) -> World:
     return data if isinstance(data, World) else World(tuple(map(disturbance_from, data)))
 
 
-_LIST = {"type": "array", "items": SENT}
+_LIST = {"type": "array", "items": DISTURBANCE_SCHEMA}
 AnyWorld = Annotated[
-    World, JsonForm(world, lambda world: [as_mapping(one) for one in world.disturbances], _LIST)
+    World, JsonForm(world, lambda world: [as_mapping(entry) for entry in world.disturbances], _LIST)
 ]
 """A world as the list of its disturbances."""
 
 
 def _conditions(disturbances: Iterable[Disturbance]) -> World:
-    """Return a world of what holds at once, which was checked before; in one order."""
+    """Return a world of disturbances that were checked before, in one order."""
     conditions = object.__new__(World)
     object.__setattr__(conditions, "disturbances", tuple(sorted(disturbances, key=repr)))
     return conditions
 
 
 def _covers(disturbance: Disturbance, key: Key) -> bool:
-    """Whether a disturbance replaces an earlier one of this key: of a leg all of its joints."""
-    return any(key[: len(own)] == own for own in disturbance.parts())
+    """Whether a disturbance replaces an earlier one of this key: that of a leg, one of a joint."""
+    return any(key[: len(prefix)] == prefix for prefix in disturbance.parts())
 
 
 def _check_compatible(first: Disturbance, other: Disturbance) -> None:
-    """Check that two disturbances do not begin at once if they are of the same thing.
+    """Check that two disturbances of the same part do not begin in the same step.
 
     Raises:
         InvalidInput: if they contradict each other.
@@ -268,33 +271,31 @@ def _check_compatible(first: Disturbance, other: Disturbance) -> None:
 
 
 def _check_possible(world: World, disturbance: Disturbance) -> None:
-    """Check that something can happen, by what holds just before.
+    """Check that a disturbance is compatible with those that hold when it begins.
 
     Raises:
-        InvalidInput: if it contradicts that.
+        InvalidInput: if it contradicts one of them.
     """
     if isinstance(disturbance, Push | Repair):
         return
     earlier = [
-        d for d in world.disturbances if d.at_step <= disturbance.at_step and d is not disturbance
+        entry
+        for entry in world.disturbances
+        if entry.at_step <= disturbance.at_step and entry is not disturbance
     ]
-    for held_disturbance in _held_at(earlier, disturbance.at_step):
-        same = any(_covers(held_disturbance, key) for key in disturbance.parts())
-        is_lost = isinstance(held_disturbance, Lost) and same and not isinstance(disturbance, Lost)
-        if (
-            is_lost
-            or _is_patch_on_bumps(disturbance, held_disturbance)
-            or _overlap(disturbance, held_disturbance)
-        ):
+    for holding in _held_at(earlier, disturbance.at_step):
+        same = any(_covers(holding, key) for key in disturbance.parts())
+        is_lost = isinstance(holding, Lost) and same and not isinstance(disturbance, Lost)
+        if is_lost or _is_patch_on_bumps(disturbance, holding) or _overlap(disturbance, holding):
             raise InvalidInput(
                 f"{disturbance.kind} at step {disturbance.at_step:,} contradicts "
-                f"{held_disturbance.kind}, which holds then; let one end before the other begins, "
+                f"{holding.kind}, which holds then; let one end before the other begins, "
                 "or leave one out"
             )
 
 
 def _held_at(disturbances: Iterable[Disturbance], step: int) -> tuple[Disturbance, ...]:
-    """Return what holds in a step, by its newest, leg by leg."""
+    """Return the newest disturbances of each part that hold in a step."""
     unchecked = object.__new__(World)
     object.__setattr__(unchecked, "disturbances", tuple(disturbances))
     return tuple(unchecked._conditions_at(step).disturbances)
@@ -308,7 +309,7 @@ def _is_patch_on_bumps(first: Disturbance, other: Disturbance) -> bool:
 
 
 def _overlap(first: Disturbance, other: Disturbance) -> bool:
-    """Whether two patches lie on each other, without being the same."""
+    """Whether two disturbances are different patches that overlap."""
     if (
         not isinstance(first, Patch)
         or not isinstance(other, Patch)
@@ -371,11 +372,11 @@ WORLDS: Mapping[str, NamedWorld] = {
 
 
 def world_from(name: str | None, more: Iterable[Disturbance]) -> World:
-    """Return the world of a name, or an undisturbed one, with what else happens.
+    """Return the world of a name, or an undisturbed one, with further disturbances.
 
     Raises:
         UnknownName: if there is no world of this name.
-        InvalidInput: if what happens contradicts itself.
+        InvalidInput: if two disturbances contradict each other.
     """
     return (UNDISTURBED if name is None else named_world(name)) + more
 
@@ -399,7 +400,7 @@ def parse_world(text: str) -> World:
     """
     if text in WORLDS or ":" not in text:
         return named_world(text)
-    return World(tuple(parse_disturbance(part) for part in text.split("+")))
+    return World(tuple(parse_disturbance(disturbance) for disturbance in text.split("+")))
 
 
 def world_text(world: World) -> str:

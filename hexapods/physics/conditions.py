@@ -1,7 +1,7 @@
 """Effects of a world on a MuJoCo model: servos, legs, ground, gravity and payload.
 
 No joint is added or removed, so that a state of one model continues in another. Sensor noise, delay
-and dead band are no part of a model.
+and dead band do not change a model.
 """
 
 from collections.abc import Sequence
@@ -31,9 +31,9 @@ from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
 
 _NO_KG = 1e-6
-"""Mass of each geom of a leg that is gone; MuJoCo needs some."""
+"""Mass of each geom of a lost leg; MuJoCo refuses 0."""
 _NO_INERTIA = 1e-9
-"""Of each body of such a leg, if it has its own [kg·m²]."""
+"""Moments of inertia of a lost leg's bodies that have their own [kg·m²]."""
 _NO_TORQUE_NM = 1e-9
 _GROUND_HALF_WIDTH_M = 50.0
 _GROUND_END_M = 2000.0
@@ -46,7 +46,7 @@ _ROUGH_MARGIN_M = 0.64
 def apply_conditions(
     spec: mujoco.MjSpec, robot: Robot, conditions: World, forward_deg: float
 ) -> None:
-    """Change a robot's specification to what holds.
+    """Apply the disturbances of a step to a robot's specification.
 
     Args:
         spec: the specification that `mjcf.robot_spec` returned.
@@ -56,10 +56,8 @@ def apply_conditions(
     """
     # All geoms are there before their friction is set, and a jammed servo has its power back last.
     later = (Friction, Stuck)
-    for one in sorted(
-        conditions.disturbances, key=lambda disturbance: isinstance(disturbance, later)
-    ):
-        _apply(one, _Target(spec, robot, forward_deg))
+    for disturbance in sorted(conditions.disturbances, key=lambda entry: isinstance(entry, later)):
+        _apply(disturbance, _Target(spec, robot, forward_deg))
     patches = sorted(conditions.all_of(Patch), key=lambda patch: patch.from_m)
     if patches:
         _lay_patches(spec, patches)
@@ -75,7 +73,7 @@ class _Target(NamedTuple):
 
 @singledispatch
 def _apply(disturbance: Disturbance, target: _Target) -> None:
-    """Change the specification; those that are no part of a model change nothing."""
+    """Change the specification; sensor noise, delay and dead band change nothing."""
 
 
 @_apply.register
@@ -95,7 +93,7 @@ def _lost(lost: Lost, target: _Target) -> None:
 
 
 def _make_weightless(body: mujoco.MjsBody) -> None:
-    """Take its mass from a body; of one with its own inertia too, of others that of the geoms."""
+    """Set the masses of a body and its geoms, and its own inertia if it has one, to nearly zero."""
     if body.explicitinertial:
         body.mass, body.inertia, body.iquat = _NO_KG, [_NO_INERTIA] * 3, [1, 0, 0, 0]
         body.fullinertia = [np.nan] * 6

@@ -1,7 +1,7 @@
-"""Which MuJoCo is loaded: results repeat to the last bit only in one version of it.
+"""Check of the loaded MuJoCo version: results repeat to the last bit only in one version of it.
 
-Two distributions, `mujoco` and `mujoco-core`, have files of the same names: what was installed last
-is loaded, whatever the metadata of the other one says.
+Two distributions, `mujoco` and `mujoco-core`, have files of the same names: the one that was
+installed last is loaded, whatever the metadata of the other one says.
 """
 
 import warnings
@@ -32,7 +32,7 @@ def mismatch() -> str | None:
 
 
 def warn_of_mismatch() -> None:
-    """Warn, where the engine is not the pinned one."""
+    """Warn if the engine is not the pinned one."""
     warning = mismatch()
     if warning is not None:
         warnings.warn(warning, RuntimeWarning, stacklevel=2)

@@ -34,11 +34,11 @@ def compile_model(
 ) -> mujoco.MjModel:
     """Compile the model that is simulated, without geoms that are only drawn; cached, read-only.
 
-    Models of one robot have states of one layout, whatever its conditions.
+    All models of a robot have states of the same layout, whatever the conditions.
 
     Args:
         robot: the robot.
-        conditions: what holds all the time, a result of `World.as_of`.
+        conditions: the disturbances of a step, a result of `World.as_of`.
         forward_deg: azimuth of the gait's forward direction in the body frame, for a payload.
     """
     is_loaded = conditions.one_of(Payload) is not None

@@ -17,7 +17,7 @@ _SEEN_GROUP = 1
 _ROLLING = (0.005, 0.0001)
 """Torsional and rolling friction."""
 _SOLREF, _SOLIMP = (0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)
-"""MuJoCo's defaults, given to every geom: none comes from the file that a robot was read from."""
+"""MuJoCo's defaults, set for every geom: those of the robot's file do not apply."""
 
 
 def model_spec(robot: ModelRobot, spec: mujoco.MjSpec) -> mujoco.MjSpec:
@@ -28,7 +28,7 @@ def model_spec(robot: ModelRobot, spec: mujoco.MjSpec) -> mujoco.MjSpec:
 
     Args:
         robot: the robot.
-        spec: that of models/torso.xml, whose ground and options are kept.
+        spec: specification of models/torso.xml, whose ground and options remain.
     """
     spec.option.timestep = robot.dt_s
     bodies = [spec.body("torso")]
@@ -90,7 +90,7 @@ def _add_link(
 
 
 def _add_mesh(spec: mujoco.MjSpec, body: mujoco.MjsBody, name: str, mesh: ModelMesh) -> None:
-    """Add what is drawn of a link; equal meshes are one asset."""
+    """Add the drawn mesh of a link; equal meshes are one asset."""
     content = hashlib.sha256(f"{mesh.vertices} {mesh.faces}".encode()).hexdigest()[:16]
     if spec.mesh(content) is None:
         vertices, faces = mesh.arrays()
@@ -164,7 +164,7 @@ def _add_geom(
 
 
 def _size(geom: ModelGeom) -> Vector:
-    """Return the size as MuJoCo takes it: a part that the kind needs is not 0."""
+    """Return the size as MuJoCo takes it: numbers that the kind needs are not 0."""
     needed = {"sphere": 1, "capsule": 2, "cylinder": 2}.get(geom.kind, 3)
     first, second, third = (
         max(half_m, 1e-4) if number < needed else 0.0 for number, half_m in enumerate(geom.size_m)

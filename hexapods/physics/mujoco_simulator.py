@@ -39,10 +39,11 @@ class MujocoState:
             other results.
         feet: foot offsets without slip, from which the next step is planned.
         distance_m: displacement of the torso's centre along the track (world +y).
-        steps: taken since rest.
+        steps: number of steps taken since rest.
         origin_m: position of the row's origin in the world (x, y); on rough ground, which repeats,
             the row is moved by whole periods so that the robot stays on one of them.
-        delayed: servo targets that were not yet received [rad], (k, joints); only with a delay.
+        delayed: servo targets that the servos have not received yet [rad], (k, joints); only with
+            a delay.
     """
 
     row: FloatArray
@@ -74,14 +75,14 @@ class MujocoSimulator:
     Args:
         robot, gait, grid: the walking problem.
         threads: number of threads of `expand`; 0 for one per core. Results do not depend on it.
-        world: what happens to the robot and the ground, by step.
+        world: disturbances of the robot and the ground.
         built: the robot as it was built, which is simulated; commands and measured feet are by the
             kinematics of `robot`, as it was designed. None if both are the same.
         reward: displacement that counts as reward.
 
     Raises:
         Unreachable: if a cell of the grid is out of a leg's reach.
-        InvalidInput: if something cannot happen to this robot.
+        InvalidInput: if a disturbance cannot happen to this robot.
     """
 
     def __init__(
@@ -203,8 +204,8 @@ class MujocoSimulator:
         ends: dict[int, MujocoState] = {}
         rewards = np.empty(len(states))
         for step, numbers in by_step.items():
-            states_here = [states[i] for i in numbers]
-            expansion = self.expand(states_here, [actions[i] for i in numbers], step)
+            states_of_step = [states[i] for i in numbers]
+            expansion = self.expand(states_of_step, [actions[i] for i in numbers], step)
             ends |= dict(zip(numbers, expansion.states, strict=True))
             rewards[numbers] = expansion.rewards_m
         return Expansion([ends[i] for i in range(len(states))], rewards)
@@ -243,7 +244,7 @@ class MujocoSimulator:
         record: Sequence[str] = (),
         pushes: Sequence[Push] = (),
     ) -> tuple[list[MujocoState], list[float], dict[str, FloatArray]]:
-        """Plan and simulate a step from each state; return ends, rewards, and what was recorded.
+        """Plan and simulate a step from each state; return ends, rewards, and recorded arrays.
 
         With `qvel`, that includes the servos' targets and the speeds before.
 
@@ -323,7 +324,7 @@ class MujocoSimulator:
         return targets, delayed
 
     def _placed(self, state: MujocoState, conditions: World) -> MujocoState:
-        """Return a state as the ground needs it.
+        """Return a state with its row placed on the ground of these conditions.
 
         On rough ground it is moved by whole periods to the one around the origin, and lifted over
         the bumps as they begin; on other ground its row has the position in the world.
@@ -373,9 +374,9 @@ class MujocoSimulator:
             return
         warned = batch.warning[: len(steps), :, 1].sum(axis=1) > 0
         batch.warning[...] = 0
-        bad = int((warned | ~np.isfinite(rewards)).argmax())
+        first = int((warned | ~np.isfinite(rewards)).argmax())
         raise Diverged(
-            f"the physics diverged at step {steps[bad]}; try a smaller robot.dt_s, a "
+            f"the physics diverged at step {steps[first]}; try a smaller robot.dt_s, a "
             "lower servo_kp or heavier links"
         )
 

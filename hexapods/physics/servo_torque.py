@@ -13,7 +13,7 @@ class Effort(NamedTuple):
     """Torque and work of the servos up to each of k frames, since the frame before."""
 
     torque_nm: NDArray[np.float16]
-    """Of each servo its largest torque by magnitude, with its sign [N·m], (k, servos)."""
+    """Largest torque by magnitude of each servo, with its sign [N·m], (k, servos)."""
     work_j: NDArray[np.float32]
     """Positive mechanical work, summed over all servos [J], (k,)."""
 
@@ -27,7 +27,7 @@ def servo_effort(
     speeds_before: FloatArray,
     frames: IntArray,
 ) -> Effort:
-    """Compute what the servos did, by their law and the integrator's.
+    """Compute torque and work of the servos, by their control law and the integrator's.
 
     A servo's torque is kp (target − angle) − kv · speed, within its limits. MuJoCo's integrator
     `implicitfast` takes the speed at the end of a substep there, so `actuator_force`, which has the
@@ -37,10 +37,10 @@ def servo_effort(
 
     Args:
         model: its servos' gains and limits.
-        targets: of the servos in each substep [rad], (n, servos).
-        angles: of the joints after each substep [rad], (n, servos).
-        speeds: of the joints after each substep [rad/s], (n, servos).
-        speeds_before: of the joints before the first substep [rad/s], (servos,).
+        targets: targets of the servos in each substep [rad], (n, servos).
+        angles: angles of the joints after each substep [rad], (n, servos).
+        speeds: speeds of the joints after each substep [rad/s], (n, servos).
+        speeds_before: speeds of the joints before the first substep [rad/s], (servos,).
         frames: indices of the substeps after which a frame ends, ascending, (k,).
     """
     dt_s, kp = model.opt.timestep, model.actuator_gainprm[:, 0]
