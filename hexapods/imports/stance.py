@@ -220,9 +220,7 @@ def search(robot: RobotWithLegs) -> Angles:
     for lower in range(_POSTURES):
         angles = _posture(robot, lower)
         pairs = _pairs(robot, angles)
-        unreached = sum(
-            _unreached(chain, pair_angles) for chain, pair_angles in pairs
-        )  # whole numbers
+        unreached = sum(_unreached(chain, at_rad) for chain, at_rad in pairs)  # whole numbers
         if unreached < fewest:
             fewest, stance = unreached, angles
         if not unreached:
