@@ -203,10 +203,10 @@ def keep_named_robots(catalogue: Catalogue, store: RunStore) -> None:
 
     A table that is missing, as of a feature that has never been there, names none.
     """
-    there = set(inspect(store.database.engine).get_table_names())
+    table_names = set(inspect(store.database.engine).get_table_names())
     for feature in (*catalogue.classes, *catalogue.left_out):
         for noun, columns in feature.robot_users.items():
-            if columns[0].table.name in there:
+            if columns[0].table.name in table_names:
                 store.robots.users[noun] = columns
 
 
@@ -223,12 +223,12 @@ class _LeftOut:
         Raises:
             InvalidInput: if a feature cannot say it, since all that it hides would be shown.
         """
-        there = set(inspect(store.database.engine).get_table_names())
+        table_names = set(inspect(store.database.engine).get_table_names())
         conditions: list[ColumnElement[bool]] = []
         self._hidden: dict[str, str] = {}
         for feature in classes:
             condition = _visible_when_left_out(feature)
-            if condition is None or not _has_tables(feature, there):
+            if condition is None or not _has_tables(feature, table_names):
                 continue
             conditions.append(condition)
             self._hidden |= dict.fromkeys(hidden_ids(store, condition), feature.name)
@@ -254,9 +254,9 @@ def _visible_when_left_out(feature: type[Feature]) -> ColumnElement[bool] | None
         ) from error
 
 
-def _has_tables(feature: type[Feature], there: Collection[str]) -> bool:
+def _has_tables(feature: type[Feature], table_names: Collection[str]) -> bool:
     """Whether the tables of a feature are there; of a new data folder they are not."""
-    missing = set() if feature.tables is None else feature.tables.tables.keys() - there
+    missing = set() if feature.tables is None else feature.tables.tables.keys() - table_names
     if missing and len(missing) < len(feature.tables.tables if feature.tables else ()):
         _logger.warning(
             "the database has lost %s of the feature %s, which is left out: runs that it hides are "

@@ -51,12 +51,12 @@ def feature_modules(
             yield FeatureModule(feature, path, importlib.import_module(path))
     for entry in entry_points(group=group):
         try:
-            part = entry.load()
+            module = entry.load()
         except Exception as error:
             if entry.name in without:
                 continue
             raise broken_part(entry.name, name, f"cannot be imported: {error}") from error
-        yield FeatureModule(entry.name, entry.value, part)
+        yield FeatureModule(entry.name, entry.value, module)
 
 
 def broken_part(feature: str, name: str, why: str) -> InvalidInput:

@@ -75,15 +75,15 @@ def main() -> None:
     parser.add_argument("--simulator", default="mujoco")
     options = parser.parse_args()
     trials = learners(options.simulator, options.trials)
-    one: list[Pass] = []
-    two: list[Pass] = []
+    single_passes: list[Pass] = []
+    double_passes: list[Pass] = []
     with connect(ClusterSpec(workers=1)) as single, connect(ClusterSpec(workers=2)) as double:
         timed(single, trials[:2])
         timed(double, trials[:4])
         for _ in range(options.repeats):
-            one.append(timed(single, trials))
-            two.append(timed(double, trials))
-    print(json.dumps(report(one, two, len(trials)), indent=2))
+            single_passes.append(timed(single, trials))
+            double_passes.append(timed(double, trials))
+    print(json.dumps(report(single_passes, double_passes, len(trials)), indent=2))
 
 
 if __name__ == "__main__":

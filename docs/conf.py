@@ -81,11 +81,12 @@ def _operation(method: str, path: str, operation: dict[str, Any]) -> Iterator[st
     yield f"\n### {operation['summary']}\n"
     yield f"`{method.upper()} {path}`\n"
     yield operation.get("description", "")
-    parameters = [one for one in operation.get("parameters", ()) if "name" in one]
+    parameters = [parameter for parameter in operation.get("parameters", ()) if "name" in parameter]
     if parameters:
         yield "\n| parameter | in | |\n|---|---|---|"
-        for one in parameters:
-            yield f"| `{one['name']}` | {one['in']} | {_cell(one.get('description', ''))} |"
+        for parameter in parameters:
+            description = _cell(parameter.get("description", ""))
+            yield f"| `{parameter['name']}` | {parameter['in']} | {description} |"
 
 
 def _cell(text: str) -> str:

@@ -223,12 +223,12 @@ def experiment(
     check_main_module()
     config = check_kept(experiment_config(name, _read(fields_and_settings)), RobotLibrary())
     spec = ClusterSpec(workers=workers)
-    kept: AbstractContextManager[Progress] = (
+    opened: AbstractContextManager[Progress] = (
         nullcontext(Progress(config))
         if folder is None
         else open_results(path_of(folder, "a folder"), config)
     )
-    with kept as progress:
+    with opened as progress:
         with closing(progress.run(progress.remaining(), spec, lambda: True)) as outcomes:
             for outcome in outcomes:
                 if on_trial is not None:

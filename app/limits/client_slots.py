@@ -91,4 +91,6 @@ class ClientSlots(Generic[T]):
             # Both addresses would have as many then, and evict each other in turns.
             return None
         spectator = _Holder(heaviest, is_operator=False)
-        return next(holder for holder, held in reversed(self._holders.items()) if held == spectator)
+        return next(
+            holder for holder, occupant in reversed(self._holders.items()) if occupant == spectator
+        )

@@ -71,8 +71,8 @@ class Sb3Agent:
             return [(np.zeros((count, count)), np.zeros(count))]
         layers = self.network(self.practice.algorithm)
         return [
-            (one.weight.detach().numpy().astype(float), one.bias.detach().numpy().astype(float))
-            for one in layers
+            (layer.weight.detach().numpy().astype(float), layer.bias.detach().numpy().astype(float))
+            for layer in layers
         ]
 
     def state(self) -> hx.AgentState:

@@ -77,10 +77,10 @@ def kept_runs(score_file: Path | None, config: BenchmarkConfig) -> Iterator[Kept
             lock_file(file)
         except OSError as error:
             raise InvalidInput(f"another process is adding runs to {path}; wait for it") from error
-        kept = KeptRuns(path, file)
-        kept.results |= stored
-        _read(file, path, config, kept)
-        yield kept
+        runs = KeptRuns(path, file)
+        runs.results |= stored
+        _read(file, path, config, runs)
+        yield runs
 
 
 def _scored(path: Path, config: BenchmarkConfig) -> dict[BenchmarkRun, BenchmarkResult]:
@@ -99,7 +99,7 @@ def _scored(path: Path, config: BenchmarkConfig) -> dict[BenchmarkRun, Benchmark
     return results_of(content)
 
 
-def _read(file: IO[bytes], path: Path, config: BenchmarkConfig, kept: KeptRuns) -> None:
+def _read(file: IO[bytes], path: Path, config: BenchmarkConfig, runs: KeptRuns) -> None:
     file.seek(0)
     lines = file.read().splitlines(keepends=True)
     if lines and not lines[-1].endswith(b"\n"):
@@ -116,7 +116,7 @@ def _read(file: IO[bytes], path: Path, config: BenchmarkConfig, kept: KeptRuns) 
         is_same = head["config"] == json.loads(json.dumps(_same_in_all(config)))
         differs = difference(versions(), head["versions"])
         for task, budget, number, distance_m, error in rows:
-            kept.results[BenchmarkRun(task, budget, number)] = BenchmarkResult(distance_m, error)
+            runs.results[BenchmarkRun(task, budget, number)] = BenchmarkResult(distance_m, error)
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile(f"{path} cannot be read ({error}); {other}") from error
     if not is_same:

@@ -107,7 +107,7 @@ class _Finder:
         if self._choices.feet is not None:
             legs = [self._chosen(name, root, bodies, hinges) for name in self._choices.feet]
         else:
-            legs = self._found(ends, hinges, wheels)
+            legs = self._lowest_chains(ends, hinges, wheels)
         legs = self._without_shared(legs)
         used = {joint for leg in legs for joint in leg.joints}
         self._tell_of_base(root)
@@ -198,7 +198,7 @@ class _Finder:
                 wheels.add(joint)
         return wheels
 
-    def _found(
+    def _lowest_chains(
         self,
         ends: Mapping[int, Sequence[int]],
         hinges: Sequence[int],

@@ -80,7 +80,7 @@ def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
     Raises:
         InvalidInput: if the chosen ones are not possible.
     """
-    angles = _level(robot, _found(robot, choices, notes), notes)
+    angles = _level(robot, _stance_of_file(robot, choices, notes), notes)
     if choices.home_rad:
         angles = _changed(robot, angles, choices.home_rad)
     return angles
@@ -95,7 +95,7 @@ def _pairs(robot: RobotWithLegs, angles: Angles) -> list[tuple[LegChain, FloatAr
     return list(zip(robot.chains, angles, strict=True))
 
 
-def _found(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
+def _stance_of_file(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
     if choices.keyframe is not None:
         if choices.keyframe not in robot.keyframes:
             valid = listed(robot.keyframes) or "none"

@@ -61,7 +61,7 @@ def pack_chunks(members: Mapping[str, Member]) -> Iterator[bytes]:
     Raises:
         InvalidInput: at the call, if the archive would be too large to be imported again.
     """
-    if packed_size(sum(one.size for one in members.values())) > MAX_BYTES or (
+    if packed_size(sum(member.size for member in members.values())) > MAX_BYTES or (
         len(members) >= MAX_MEMBERS
     ):
         raise InvalidInput(f"it is too large for an archive, which has up to {MAX_BYTES:,} B")
@@ -76,10 +76,10 @@ def packed_size(size: int) -> int:
 def _pack_chunks(members: Mapping[str, Member]) -> Iterator[bytes]:
     buffer, hashes = DrainedBuffer(), dict[str, str]()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
-        for name, one in members.items():
+        for name, member in members.items():
             digest = hashlib.sha256()
-            with archive.open(_zip_info(name, one.size), "w") as file:
-                for chunk in one.chunks():
+            with archive.open(_zip_info(name, member.size), "w") as file:
+                for chunk in member.chunks():
                     digest.update(chunk)
                     file.write(chunk)
                     yield buffer.drain()
@@ -132,10 +132,10 @@ def _check_end(data: bytes, label: str) -> None:
         raise DamagedFile(
             f"{label} is no archive of a run, or was cut short; `hexapods export` makes one"
         )
-    _, disk, start_disk, here, count, size, start, comment = _END.unpack_from(data, offset)
+    _, disk, start_disk, count_on_disk, count, size, start, comment = _END.unpack_from(data, offset)
     if count > MAX_MEMBERS or size > _MAX_DIRECTORY_BYTES:
         raise DamagedFile(f"{label} has {count:,} members; an archive has at most {MAX_MEMBERS}")
-    if (disk, start_disk, here, comment) != (0, 0, count, 0) or start + size != offset:
+    if (disk, start_disk, count_on_disk, comment) != (0, 0, count, 0) or start + size != offset:
         raise DamagedFile(f"{label} is damaged: its end does not say what is in it")
 
 

@@ -79,8 +79,8 @@ def members_of(store: RunStore, run: Run) -> dict[str, Member]:
             names.append(CHECKPOINT)
     members = {}
     # A query for each of the 140 names that there could be would take most of the export's time.
-    kept = store.artifact_files(run.id)
-    for name in filter(kept.__contains__, names):
+    artifact_files = store.artifact_files(run.id)
+    for name in filter(artifact_files.__contains__, names):
         file = store.open_artifact(run.id, name)
         if file is not None:
             members[name] = Member(file.size, partial(_chunks_of, store, run.id, name))
@@ -205,11 +205,11 @@ def _check_transitions(config: WalkingProblem, files: Mapping[str, bytes]) -> No
     if names != [transitions_file(number) for number in range(len(names))]:
         raise ValueError("some of its steps are missing")
     for number, name in enumerate(names):
-        part = transitions(tables.read_arrays(files[name]))
-        part.check(len(config.resolved_gait.groups), len(config.grid))
-        if part.first != number * TRANSITIONS_PER_FILE or part.rewards_m.size == 0:
+        log = transitions(tables.read_arrays(files[name]))
+        log.check(len(config.resolved_gait.groups), len(config.grid))
+        if log.first != number * TRANSITIONS_PER_FILE or log.rewards_m.size == 0:
             raise ValueError("its steps do not follow each other")
-        if part.rewards_m.size > TRANSITIONS_PER_FILE:
+        if log.rewards_m.size > TRANSITIONS_PER_FILE:
             raise ValueError("it has more steps than a file holds")
 
 

@@ -28,7 +28,7 @@ def robot_members(store: RunStore, run: Run) -> dict[str, bytes]:
     Raises:
         NotFound, DamagedFile: if one is not there, or damaged.
     """
-    return {f"robot-{one}.json": store.robots.document(one) for one in _names(run)}
+    return {f"robot-{robot_id}.json": store.robots.document(robot_id) for robot_id in _names(run)}
 
 
 def take_documents(members: dict[str, bytes], label: str) -> dict[str, bytes]:
@@ -60,12 +60,12 @@ def robots_to_store(
         DamagedFile: if a document is of a robot that the run does not use.
     """
     names = _names(run)
-    if others := [one for one in documents if one not in names]:
-        raise DamagedFile(f"{label} has robot {others[0]}, which its run does not use")
+    if unused := [robot_id for robot_id in documents if robot_id not in names]:
+        raise DamagedFile(f"{label} has robot {unused[0]}, which its run does not use")
     gait = run.config.gait if run.kind in WALKS else None
     return [
-        (StoredRobot(id=one, name=check_name(names[one]), gait=gait), document)
-        for one, document in documents.items()
+        (StoredRobot(id=robot_id, name=check_name(names[robot_id]), gait=gait), document)
+        for robot_id, document in documents.items()
     ]
 
 

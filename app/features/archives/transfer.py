@@ -77,16 +77,16 @@ def export_many(
     ids = list(dict.fromkeys(run_ids))
     if not 1 <= len(ids) <= MAX_RUNS:
         raise InvalidInput(f"an archive has from 1 to {MAX_RUNS} runs, not {len(ids):,}")
-    members, held = {}, 0
+    members, largest = {}, 0
     for run_id in ids:
         run, texts, files = _contents(store, run_id)
         in_memory = sum(map(len, texts.values()))
         size = in_memory + sum(file.size for file in files.values())
         chunks = partial(export_chunks, store, run_id)
         members[f"{run.kind}-{run.id}.zip"] = archive.Member(archive.packed_size(size), chunks)
-        held = max(held, in_memory)
+        largest = max(largest, in_memory)
     packed = archive.pack_chunks(members)
-    return packed if budget is None else BudgetedChunks(packed, held, budget)
+    return packed if budget is None else BudgetedChunks(packed, largest, budget)
 
 
 def _contents(
@@ -144,8 +144,12 @@ def import_runs(
         raise DamagedFile(f"{label} is no archive of runs: it has no {RUN}")
     else:
         checked = [
-            _checked(archive.unpack(one, label, _is_member_name), store.kinds, ids, agents, label)
-            for label, one in ((f"{name} of {label}", one) for name, one in members.items())
+            _checked(
+                archive.unpack(member, label, _is_member_name), store.kinds, ids, agents, label
+            )
+            for label, member in (
+                (f"{name} of {label}", member) for name, member in members.items()
+            )
         ]
     return list(store.add(checked, ids, key))
 

@@ -56,25 +56,25 @@ class CardStarts:
             checked[name] = check_given(name, value, card.may[name], form)
         return checked
 
-    def start(self, card: Card, given: Mapping[str, Any], seed: int, name: str) -> Start:
+    def start(self, card: Card, settings: Mapping[str, Any], seed: int, name: str) -> Start:
         """Return the start of a card that runs a training or a race.
 
         Args:
             card: the card.
-            given: what a participant gives, as it was checked.
+            settings: what a participant gives, as it was checked.
             seed: of the run.
             name: of the run.
 
         Raises:
             InvalidInput: if the form is not valid with what is given.
         """
-        fields = _Fields({**card.form, **given})
+        fields = _Fields({**card.form, **settings})
         body = fields.race(seed) if card.go == "race" else {**fields.training(), "seed": seed}
         return self._read("race" if card.go == "race" else "training", {**body, "name": name})
 
-    def what_if(self, card: Card, given: Mapping[str, Any]) -> TrainingConfig:
+    def what_if(self, card: Card, settings: Mapping[str, Any]) -> TrainingConfig:
         """Return the settings of a card that asks a what-if; errors as `start`."""
-        start = self._read("training", _Fields({**card.form, **given}).training())
+        start = self._read("training", _Fields({**card.form, **settings}).training())
         assert isinstance(start, TrainingStart)  # noqa: S101 - by the body
         return start.config
 

@@ -41,7 +41,7 @@ class Expiry:
         store: RunStore,
         jobs: Jobs,
         visitors: Visitors,
-        others: Sequence[Cleaner] = (),
+        cleaners: Sequence[Cleaner] = (),
         *,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
         now_s: Callable[[], float] = time.monotonic,
@@ -52,12 +52,12 @@ class Expiry:
             store: store of the runs.
             jobs: stops and deletes runs.
             visitors: whose runs are whose, and for how long.
-            others: delete what does not outlive a day either, beside the runs.
+            cleaners: delete what does not outlive a day either, beside the runs.
             now: the clock, with time zone.
             now_s: monotonic clock [s].
         """
         self._store, self._jobs, self._visitors = store, jobs, visitors
-        self._others = others
+        self._cleaners = cleaners
         self._now, self._now_s = now, now_s
         self._running_since_s: dict[str, float] = {}
 
@@ -69,7 +69,7 @@ class Expiry:
         before = self._now() - self._visitors.allowance.lifetime
         old = self._visitors.made_before(before)
         self._visitors.forget(self._deleted(run.run_id for run in old))
-        gone = [self._deleted_of(other, before) for other in self._others]
+        gone = [self._deleted_of(other, before) for other in self._cleaners]
         try:
             self._store.keys.delete_expired()
             self._stop_overlong()

@@ -187,7 +187,9 @@ class _SentProgress(Progress):
                 failed=counts["failed"],
                 set_aside=len(self.set_aside),
             ),
-            claims=tuple(ClaimVerdict(id=one["id"], verdict=one["verdict"]) for one in claims),
+            claims=tuple(
+                ClaimVerdict(id=claim["id"], verdict=claim["verdict"]) for claim in claims
+            ),
             files=tuple(self._files),
             finding=self._summary["finding"],
         )

@@ -104,12 +104,12 @@ class SearchFindings(NamedTuple):
 
 def _search(search: SearchFindings, logged: Logged, names: ActionNames) -> dict[str, Any]:
     best_first = sorted(
-        search.futures, key=lambda one: (one.action != logged.action, -one.return_m)
+        search.futures, key=lambda future: (future.action != logged.action, -future.return_m)
     )
     return {
         "compares": search.compares,
         "transitions": search.transitions,
-        "futures": [{**one._asdict(), "action": list(one.action)} for one in best_first],
+        "futures": [{**future._asdict(), "action": list(future.action)} for future in best_first],
         "sentences": _search_sentences(search, best_first, logged, names),
     }
 
@@ -118,7 +118,7 @@ def _search_sentences(
     search: SearchFindings, best_first: Sequence[Future], logged: Logged, names: ActionNames
 ) -> list[str]:
     """Return the findings of a search in sentences; the first future is that of its action."""
-    chosen, *others = best_first
+    chosen, *further = best_first
     steps = "step" if search.transitions == 1 else "steps"
     sentences = [
         f"It simulated {search.transitions:,} {steps} before it took this one, and compared the "
@@ -126,8 +126,8 @@ def _search_sentences(
         f"{in_millimetres(chosen.return_m)} in {chosen.steps} "
         f"step{'s' * (chosen.steps != 1)}, of which {in_millimetres(chosen.reward_m)} at once."
     ]
-    if others:
-        other = others[0]
+    if further:
+        other = further[0]
         sentences.append(
             f"The next highest, {names.move(other.action)}, promised "
             f"{in_millimetres(other.return_m)} in {other.steps} step{'s' * (other.steps != 1)}."
@@ -211,17 +211,19 @@ def _wanted(choice: ChoiceExplanation, names: ActionNames) -> str:
 
 
 def _update(explained: UpdateExplanation, names: ActionNames) -> dict[str, Any]:
-    others = explained.others
-    changed = {(one.observation, one.action) for one in others if one.before != one.after}
-    largest = sorted(others, key=lambda one: -abs(one.after - one.before))[:MAX_OTHERS]
+    further = explained.others
+    changed = {
+        (update.observation, update.action) for update in further if update.before != update.after
+    }
+    largest = sorted(further, key=lambda update: -abs(update.after - update.before))[:MAX_OTHERS]
     return {
         "summary": explained.summary,
         "direct": None if explained.update is None else _value_update(explained.update, names),
         "stored": explained.stored,
         "others": {
-            "count": len(others),
+            "count": len(further),
             "values_changed": len(changed),
-            "largest": [_value_update(one, names) for one in others if one in largest],
+            "largest": [_value_update(update, names) for update in further if update in largest],
         },
         "beliefs": [belief._asdict() for belief in explained.beliefs],
     }

@@ -85,7 +85,7 @@ def standing_of(
         Conflict: if it is not behind.
     """
     figures = lane_figures(lanes, steps, clock)
-    ranked = [one.finished_distance_m for one in figures]
+    ranked = [lane_result.finished_distance_m for lane_result in figures]
     distances_m = [
         recording.distance_m if metres is None else metres
         for recording, metres in zip(lanes, ranked, strict=True)
@@ -152,22 +152,22 @@ def count_tried(agent: ValuedTable, walked: Iterable[Cells]) -> Tried:
         agent: the learner.
         walked: the states in which it stood in the race.
     """
-    table, there = agent.table, list(dict.fromkeys(walked))
+    table, visited = agent.table, list(dict.fromkeys(walked))
     tried_there, moves_there = (
         sum(column)  # whole numbers
-        for column in zip(*(_tried(agent, cells) for cells in there), strict=True)
+        for column in zip(*(_count_tried_moves(agent, cells) for cells in visited), strict=True)
     )
     if isinstance(table, LandingTable):
         tried = sum(visits > 0 for _, _, visits in table.rows())  # whole numbers
-        return Tried(tried, table.size, "landings", len(there), tried_there, moves_there)
+        return Tried(tried, table.size, "landings", len(visited), tried_there, moves_there)
     stored: Iterable[Cells] = map(table.cells_at, range(table.states))
     if isinstance(table, QTable):
         stored = (cells for cells, _, _ in table.rows())
-    tried = sum(_tried(agent, cells)[0] for cells in stored)  # whole numbers
-    return Tried(tried, table.size, "moves", len(there), tried_there, moves_there)
+    tried = sum(_count_tried_moves(agent, cells)[0] for cells in stored)  # whole numbers
+    return Tried(tried, table.size, "moves", len(visited), tried_there, moves_there)
 
 
-def _tried(agent: Valuing, cells: Cells) -> tuple[int, int]:
+def _count_tried_moves(agent: Valuing, cells: Cells) -> tuple[int, int]:
     """Return how many moves of a state were tried, and how many there are."""
     legal = np.isfinite(agent.values(cells))
     return int(np.count_nonzero(agent.visits(cells)[legal])), int(legal.sum())

@@ -52,10 +52,12 @@ class RebuiltPractice:
 
         A training that resumes may have forgotten steps, and changes of settings may follow.
         """
-        reached = max(self._learner.step, *(one.step for one in self._snapshots[-1:]), 0)
-        tuned = max(self._learner.tuned, *(one.tuned for one in self._snapshots[-1:]), 0)
-        known = self._changes[:tuned]
-        return len(steps) >= reached and list(changes[: len(known)]) == list(known)
+        reached = max(self._learner.step, *(snapshot.step for snapshot in self._snapshots[-1:]), 0)
+        tuned = max(self._learner.tuned, *(snapshot.tuned for snapshot in self._snapshots[-1:]), 0)
+        recorded_changes = self._changes[:tuned]
+        return len(steps) >= reached and list(changes[: len(recorded_changes)]) == list(
+            recorded_changes
+        )
 
     def learner_at(self, step: int, steps: LoggedSteps, changes: Changes) -> RebuiltLearner:
         """Return the learner after so many steps; valid until the next call.
@@ -96,7 +98,7 @@ class RebuiltPractice:
         return explained
 
     def _go_to(self, step: int, steps: LoggedSteps) -> None:
-        place = bisect_right(self._snapshots, step, key=lambda one: one.step) - 1
+        place = bisect_right(self._snapshots, step, key=lambda snapshot: snapshot.step) - 1
         nearest = self._snapshots[place] if place >= 0 else None
         if self._learner.step > step or (nearest and nearest.step > self._learner.step):
             self._learner, self._worked_s = self._new(), 0.0
@@ -154,6 +156,6 @@ class RebuiltPractice:
         self._snapshots.append(snapshot)
         # Not much of the time for snapshots, which take long where tables are large.
         self._spacing_s = max(self._spacing_s, 5 * (time.perf_counter() - began_s))
-        if sum(one.size for one in self._snapshots) > MAX_SNAPSHOT_BYTES:
+        if sum(state.size for state in self._snapshots) > MAX_SNAPSHOT_BYTES:
             self._snapshots = self._snapshots[1::2]
             self._spacing_s *= 2

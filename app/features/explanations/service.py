@@ -214,26 +214,26 @@ class Explanations:
 
     def _answer(self, key: Hashable, answer: Callable[[], dict[str, Any]]) -> bytes:
         """Return a known answer, or a new one."""
-        known = self._answers.get(key)
-        if known is not None:
-            return known
+        cached = self._answers.get(key)
+        if cached is not None:
+            return cached
         with self._turns.turn(self._stopping.check):
             # Another request may have asked for the same meanwhile.
-            known = self._answers.get(key)
-            if known is None:
-                known = json.dumps(answer(), ensure_ascii=False, allow_nan=False).encode()
-                self._answers.put(key, known)
-            return known
+            cached = self._answers.get(key)
+            if cached is None:
+                cached = json.dumps(answer(), ensure_ascii=False, allow_nan=False).encode()
+                self._answers.put(key, cached)
+            return cached
 
     def _explain_lane(self, run: Run, config: RaceConfig, step: int | None, lane: int) -> bytes:
-        recording, own = self._lane(run, lane), config.lanes[lane]
+        recording, lane_config = self._lane(run, lane), config.lanes[lane]
         number = _checked_step(step, len(recording.steps), config.steps, run)
-        steps = LoggedLane(recording, own.observation == "measured")
+        steps = LoggedLane(recording, lane_config.observation == "measured")
 
         def answer() -> dict[str, Any]:
             why = None
             explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
-            search = _search_of(own.agent, recording.steps[number - 1])
+            search = _search_of(lane_config.agent, recording.steps[number - 1])
             if search is None:
                 try:
                     practice = self._lane_practice(run, config, lane, steps)
@@ -241,7 +241,10 @@ class Explanations:
                 except (Conflict, InvalidInput, NotRebuilt) as error:
                     why = str(error)
             return explanation_as_json(
-                *(run.id, config, own.agent, explained), lane=lane, search=search, unexplained=why
+                *(run.id, config, lane_config.agent, explained),
+                lane=lane,
+                search=search,
+                unexplained=why,
             )
 
         # The update by the newest step of a race that runs is told with the next one.
@@ -278,7 +281,7 @@ class Explanations:
                 )
             return RebuiltPractice(new)
 
-        return self._kept((run.id, run.created_at), steps, run.changes, make)
+        return self._practice_of((run.id, run.created_at), steps, run.changes, make)
 
     def _lane_practice(
         self, run: Run, config: RaceConfig, lane: int, steps: LoggedSteps
@@ -290,9 +293,9 @@ class Explanations:
             return rebuild_lane(config, lane, table)
 
         key = (run.id, run.created_at, lane)
-        return self._kept(key, steps, (), lambda: RebuiltPractice(new))
+        return self._practice_of(key, steps, (), lambda: RebuiltPractice(new))
 
-    def _kept(
+    def _practice_of(
         self,
         key: Hashable,
         steps: LoggedSteps,
@@ -363,7 +366,7 @@ def _version(run: Run, step: int, steps: LoggedSteps) -> Hashable:
 
 def _search_of(agent: str, step: LaneStep) -> SearchFindings | None:
     """Return what the search of a lane found; None if it does not search, or was not recorded."""
-    if not any(one.action == step.action for one in step.futures):
+    if not any(future.action == step.action for future in step.futures):
         return None
     return SearchFindings(registry.compares(agent), step.transitions, step.futures)
 

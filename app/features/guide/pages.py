@@ -79,8 +79,8 @@ def guide_routes(folder: Path) -> list[BaseRoute]:
     def show(request: Request) -> Response:
         name = request.path_params["name"]
         if name not in _NAMES:
-            known = ", ".join(sorted(_NAMES))
-            return problem(404, f"The guide has no page {name!r}; it has {known}.")
+            names = ", ".join(sorted(_NAMES))
+            return problem(404, f"The guide has no page {name!r}; it has {names}.")
         return HTMLResponse(_page(folder, name))
 
     return [GuardedPage("/guide/{name}", show, name="guide")]
@@ -104,7 +104,8 @@ def _page(folder: Path, name: str) -> str:
         title=_title(folder, name),
         name=name,
         contents=[
-            (heading, [(one, _title(folder, one)) for one in names]) for heading, names in CONTENTS
+            (heading, [(page, _title(folder, page)) for page in names])
+            for heading, names in CONTENTS
         ],
         body=Markup(body),  # noqa: S704 - of files of the project, whose HTML is escaped
         version=__version__,

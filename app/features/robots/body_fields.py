@@ -55,7 +55,9 @@ def _declared(
 ) -> dict[str, DeclaredSetting]:
     return {
         name: declare(
-            name, Annotated[float, Ge(ranges[name][0]), Le(ranges[name][1]), one], defaults[name]
+            name,
+            Annotated[float, Ge(ranges[name][0]), Le(ranges[name][1]), setting],
+            defaults[name],
         )
-        for name, one in about.items()
+        for name, setting in about.items()
     }

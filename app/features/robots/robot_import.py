@@ -68,20 +68,22 @@ def import_robot(
     if _is_model(data):
         imported = _read(data, file)
         about, document = _of_file(imported, AS_FOUND, file)
-        own = name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
-        about = replace(about, name=_named(store, own or None))
-        return store.robots.add(document, about, RobotOrigin(data, _found(imported)))
+        chosen_name = (
+            name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
+        )
+        about = replace(about, name=_named(store, chosen_name or None))
+        return store.robots.add(document, about, RobotOrigin(data, _description(imported)))
     content = _json(data)
     if "format" in content:
-        made, document = parse_document(data), data
+        body, document = parse_document(data), data
         content = {}
     else:
-        made = robot(_member(content, "robot"))
-        document = document_of(made)
+        body = robot(_member(content, "robot"))
+        document = document_of(body)
         parse_document(document)  # which refuses numbers out of their limits
     given_gait = content.get("gait")
-    gait = suiting_gait(made) if given_gait is None else read_gait(given_gait)
-    check_stands(made, gait)
+    gait = suiting_gait(body) if given_gait is None else read_gait(given_gait)
+    check_stands(body, gait)
     about = StoredRobot(
         id=robot_documents.id_of(document),
         name=_named(store, name if name is not None else content.get("name")),
@@ -109,7 +111,7 @@ def correct_robot(store: RunStore, robot_id: str, choices: Choices) -> StoredRob
     imported = _read(origin.upload, stored.file, choices)
     about, document = _of_file(imported, choices, stored.file)
     return store.robots.replace(
-        robot_id, document, about, RobotOrigin(origin.upload, _found(imported))
+        robot_id, document, about, RobotOrigin(origin.upload, _description(imported))
     )
 
 
@@ -137,10 +139,10 @@ def _of_file(
     return about, document
 
 
-def _found(imported: ImportedRobot) -> bytes:
+def _description(imported: ImportedRobot) -> bytes:
     names = ("file_format", "file", "legs", "feet", "keyframes", "forward_deg", "reaches_grid")
-    told = to_json(imported)
-    return json.dumps({name: told[name] for name in names}).encode()
+    fields = to_json(imported)
+    return json.dumps({name: fields[name] for name in names}).encode()
 
 
 def _is_model(data: bytes) -> bool:
@@ -149,47 +151,47 @@ def _is_model(data: bytes) -> bool:
 
 
 def _distinct(store: RunStore, name: str) -> str:
-    taken = [one.name for one in store.robots.stored(hidden=True)]
+    taken = [stored.name for stored in store.robots.stored(hidden=True)]
     return distinct_name(name or _UNNAMED, taken)
 
 
-def suiting_gait(made: Robot) -> str | GaitSpec:
+def suiting_gait(robot: Robot) -> str | GaitSpec:
     """Return its preset's gait, a named one with which it stands, or the fewest groups that do."""
-    if (own := own_gait(made)) != _FALLBACK:
-        return own
+    if (gait_of_preset := own_gait(robot)) != _FALLBACK:
+        return gait_of_preset
     for name in _NAMED:
         with suppress(InvalidInput):  # it does not divide these legs
-            gait = resolve(name, made.azimuths_deg)
-            if Support(made, gait).least_margin_m(gait.groups) >= STANDS_M:
+            gait = resolve(name, robot.azimuths_deg)
+            if Support(robot, gait).least_margin_m(gait.groups) >= STANDS_M:
                 return name
     spec = gait_spec(_FALLBACK)
-    groups = Support(made, resolve(spec, made.azimuths_deg)).steadiest_groups()
+    groups = Support(robot, resolve(spec, robot.azimuths_deg)).steadiest_groups()
     return GaitSpec(spec.right_leg, spec.left_leg, groups=groups)
 
 
-def check_stands(made: Robot, gait: str | GaitSpec) -> None:
+def check_stands(robot: Robot, gait: str | GaitSpec) -> None:
     """Check that a robot stands, and that its legs reach some foot grid.
 
     Raises:
         InvalidInput: if they do not, naming a leg, or the gait does not divide its legs.
     """
-    if isinstance(made, ModelRobot):
-        resolve(gait, made.azimuths_deg)
+    if isinstance(robot, ModelRobot):
+        resolve(gait, robot.azimuths_deg)
         return  # how it stands is corrected after it is stored
-    known = preview(WalkingProblem(gait=gait, robot=made))
-    if known.largest_side_m is None:
-        raise InvalidInput(f"it cannot walk on any foot grid: {known.out_of_reach}")
-    if not known.stands:
+    previewed = preview(WalkingProblem(gait=gait, robot=robot))
+    if previewed.largest_side_m is None:
+        raise InvalidInput(f"it cannot walk on any foot grid: {previewed.out_of_reach}")
+    if not previewed.stands:
         raise InvalidInput(
             "it does not stand even on all of its feet, since its centre of mass is not above "
             "them; move a leg's foot"
         )
 
 
-def _named(store: RunStore, given: Any) -> str:
-    if given is None:
+def _named(store: RunStore, wanted: Any) -> str:
+    if wanted is None:
         return _distinct(store, _UNNAMED)
-    if not isinstance(given, str) or not (name := check_name(given)):
+    if not isinstance(wanted, str) or not (name := check_name(wanted)):
         raise InvalidInput("a robot has a name with a visible character")
     return name
 
@@ -204,7 +206,7 @@ def _json(data: bytes) -> dict[str, Any]:
         raise InvalidInput(f"it is no JSON that can be read: {_TOLD}") from error
     if not isinstance(content, Mapping):
         raise InvalidInput(f"it is no JSON object: {_TOLD}")
-    unknown = [one for one in content if one not in MEMBERS]
+    unknown = [member for member in content if member not in MEMBERS]
     if "format" not in content and unknown:
         raise InvalidInput(f"unknown member {unknown[0][:100]!r}: {_TOLD}")
     return dict(content)

@@ -26,15 +26,15 @@ def file_of(
     tournament.check_ended()
     entries = tuple(
         JudgedEntry(
-            number=one.number, name=name_of(one), entry=one.entry, judgements=one.in_order()
+            number=entry.number, name=name_of(entry), entry=entry.entry, judgements=entry.in_order()
         )
-        for one in tournament.judged
+        for entry in tournament.judged
     )
-    if {one.number for one in entries} != {one.number for one in tournament.standings}:
+    if {entry.number for entry in entries} != {entry.number for entry in tournament.standings}:
         raise DamagedFile(
             "what the database holds of this tournament's entries is damaged; put a backup back"
         )
-    digests = dict.fromkeys(one.entry.table for one in entries if one.entry.table is not None)
+    digests = dict.fromkeys(entry.entry.table for entry in entries if entry.entry.table is not None)
     file = TournamentFile(
         title=tournament.title,
         rules=tournament.rules,

@@ -75,7 +75,7 @@ def _practised(store: RunStore, run: Run) -> int:
                 "one that was practised on this server"
             )
         if run.continued_from is None:
-            return sum(one.done for one in runs.values())
+            return sum(practice.done for practice in runs.values())
         run = _training(store, run.continued_from)
         if run.id in runs:
             raise InvalidInput(f"training {run.id} continues itself")

@@ -177,8 +177,10 @@ class Judge:
     def _next_draw(self) -> _Draw | None:
         """Return the next draw of the tournament that has waited longest."""
         served = self._work.served
-        going_on = [one for one in self._tournaments.all() if one.state != "ended"]
-        for tournament in sorted(going_on, key=lambda one: served.get(one.id, -1)):
+        going_on = [
+            tournament for tournament in self._tournaments.all() if tournament.state != "ended"
+        ]
+        for tournament in sorted(going_on, key=lambda tournament: served.get(tournament.id, -1)):
             for entry in in_turn(tournament):
                 for number in range(tournament.rules.draws):
                     draw = _Draw(tournament, entry, number)
@@ -243,7 +245,7 @@ class Judge:
         try:
             with self._changed:
                 is_last = tournament.state == "ending" and not tournament.waiting
-                judged = {one.number: one.in_order() for one in tournament.judged}
+                judged = {entry.number: entry.in_order() for entry in tournament.judged}
             if is_last:
                 (outcome,) = pool.map(outcome_of, [(tournament.rules, tournament.secret, judged)])
                 self._tournaments.finish(tournament, outcome)

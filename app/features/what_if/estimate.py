@@ -129,11 +129,11 @@ class Estimates:
     def _measured(self, wanted: Iterable[TimedSteps]) -> Mapping[TimedSteps, float]:
         """Return the time of a step of each kind [s], of the first `MAX_MEASURED` kinds."""
         kinds = list(dict.fromkeys(wanted))[:MAX_MEASURED]
-        times_s = self._known(kinds)
+        times_s = self._cached(kinds)
         if len(times_s) < len(kinds):
             with self.turns.turn(self._stopping.check):
                 # A request that was answered meanwhile may have timed the same.
-                times_s = self._known(kinds)
+                times_s = self._cached(kinds)
                 missing = [kind for kind in kinds if kind not in times_s]
                 times_s |= zip(missing, self._timed(missing), strict=True)
                 with self._lock:
@@ -150,7 +150,7 @@ class Estimates:
                 "would take very long; choose settings with less work in each step"
             ) from error
 
-    def _known(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:
+    def _cached(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:
         # At one time for all: what expires between two looks would raise.
         with self._lock, self._cache.timer:
             return {kind: self._cache[kind] for kind in kinds if kind in self._cache}

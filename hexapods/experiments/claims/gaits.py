@@ -51,7 +51,10 @@ def gait_claims(alike_after: int, slow_after: int) -> tuple[Claim, Claim]:
 
 def odd_gait_ratio(case: Case, steps: int) -> Interval | None:
     """Return the distance of left-right, mirrored as a share of the other three gaits' together."""
-    odd, other_gaits = total_distances(case, ODD_GAIT, steps), _others(case, steps)
+    odd, other_gaits = (
+        total_distances(case, ODD_GAIT, steps),
+        _distances_of_other_gaits(case, steps),
+    )
     if not odd or other_gaits is None or pooled_iqm(*map(np.asarray, other_gaits)) <= 0:
         return None
 
@@ -71,13 +74,13 @@ def total_distances(case: Case, gait: str, steps: int) -> Points:
     return tuple(setting["total"]["points_m"]) if setting is not None and once else ()
 
 
-def _others(case: Case, steps: int) -> list[Points] | None:
+def _distances_of_other_gaits(case: Case, steps: int) -> list[Points] | None:
     walks = [total_distances(case, gait, steps) for gait in OTHER_GAITS]
     return walks if all(walks) else None
 
 
 def _alike(case: Case, steps: int) -> CaseFinding | None:
-    distances = _others(case, steps)
+    distances = _distances_of_other_gaits(case, steps)
     if distances is None:
         return None
 
