@@ -84,7 +84,7 @@ def test_a_feature_that_fails_at_the_start_is_named(member: str, tmp_path: Path,
     ],
     ids=["event", "option", "stage", "table"],
 )
-def test_what_replaces_something_of_another_feature_is_refused(
+def test_a_feature_that_replaces_something_of_another_one_is_refused(
     members: dict[str, Any], message: str, tmp_path: Path, add: Add
 ) -> None:
     if "tables" in members:
@@ -106,7 +106,9 @@ def test_a_feature_that_is_left_out_and_cannot_say_what_it_hides_is_named(
         pass
 
 
-def test_what_nobody_can_say_to_be_shown_is_refused(tmp_path: Path, add: Add) -> None:
+def test_a_run_is_refused_if_a_feature_cannot_say_whether_it_is_hidden(
+    tmp_path: Path, add: Add
+) -> None:
     add(failing("why_hidden"))
     bearer = {"authorization": f"Bearer {TOKEN}"}
     with running(Settings(data=tmp_path, token=TOKEN)) as api:

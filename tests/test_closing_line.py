@@ -58,7 +58,7 @@ def test_it_is_what_pytest_says_and_sums_files(
     assert "= 1 failed, 4 passed, 1 skipped, 1 error in " in last
 
 
-def test_hours_are_told_as_pytest_tells_them() -> None:
+def test_hours_are_written_as_pytest_writes_them() -> None:
     line = closing_line(Counter(passed=6363), 3723.456)
     assert line.strip("=") == " 6363 passed in 3723.46s (1:02:03) "
 

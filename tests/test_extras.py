@@ -113,7 +113,7 @@ def test_the_modules_of_the_extras_are_those_that_are_imported() -> None:
 
 
 @pytest.mark.parametrize("extra", MODULES)
-def test_a_module_that_is_missing_is_told_in_one_line_with_what_installs_it(
+def test_a_missing_module_is_reported_in_one_line_with_the_command_that_installs_it(
     extra: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     [module, *_] = MODULES[extra]

@@ -116,7 +116,7 @@ def test_what_needs_a_feature_that_is_left_out_is_refused(install: Callable[[str
         load(["classroom"])
 
 
-def test_those_that_need_each_other_are_both_there(install: Callable[[str], None]) -> None:
+def test_features_that_need_each_other_are_both_loaded(install: Callable[[str], None]) -> None:
     install(
         'class Left(Feature):\n    name = "left"\n    needs = ("right",)\n'
         'class Right(Feature):\n    name = "right"\n    needs = ("left",)\n'
@@ -138,7 +138,7 @@ def test_two_of_one_name_are_refused(install: Callable[[str], None]) -> None:
         ("class Broken(Missing):\n    pass\n", "cannot be imported"),
     ],
 )
-def test_a_package_without_a_feature_is_told(
+def test_a_package_without_a_feature_is_reported(
     install: Callable[[str], None], source: str, message: str
 ) -> None:
     install(source)
@@ -178,7 +178,7 @@ def test_what_is_left_out_keeps_its_data(tmp_path: Path) -> None:
 
 
 @needs("classroom")
-def test_a_table_that_is_missing_is_told(tmp_path: Path) -> None:
+def test_a_missing_table_is_reported(tmp_path: Path) -> None:
     start(tmp_path)
     with closing(sqlite3.connect(tmp_path / DATABASE_FILE)) as file:
         file.execute("DROP TABLE predictions")
@@ -192,7 +192,7 @@ def test_a_table_that_is_missing_is_told(tmp_path: Path) -> None:
 
 
 @needs("demo")
-def test_tables_of_a_newer_version_are_told(tmp_path: Path) -> None:
+def test_tables_of_a_newer_version_are_reported(tmp_path: Path) -> None:
     start(tmp_path)
     with closing(sqlite3.connect(tmp_path / DATABASE_FILE)) as file:
         file.execute("UPDATE alembic_version_demo SET version_num = 'demo_9999'")
@@ -205,7 +205,9 @@ def test_tables_of_a_newer_version_are_told(tmp_path: Path) -> None:
 
 
 @needs("classroom")
-def test_two_with_one_page_are_told(tmp_path: Path, install: Callable[[str], None]) -> None:
+def test_two_features_with_one_page_are_reported(
+    tmp_path: Path, install: Callable[[str], None]
+) -> None:
     install(
         'class Rival(Feature):\n    name = "rival"\n    def pages(self):\n'
         '        return [Route("/r/{code}", lambda request: None)]\n'
@@ -217,7 +219,9 @@ def test_two_with_one_page_are_told(tmp_path: Path, install: Callable[[str], Non
         pass
 
 
-def test_two_with_one_operation_are_told(tmp_path: Path, install: Callable[[str], None]) -> None:
+def test_two_features_with_one_operation_are_reported(
+    tmp_path: Path, install: Callable[[str], None]
+) -> None:
     install(
         "from app.api.policy import WATCH, api_router, policy\n"
         "router = api_router()\n"

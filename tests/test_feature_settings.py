@@ -69,7 +69,7 @@ def diary(install: Callable[[str], None]) -> None:
 
 
 @pytest.mark.usefixtures("diary")
-def test_they_are_read_like_those_of_the_core() -> None:
+def test_settings_of_features_are_read_like_those_of_the_core() -> None:
     settings = read_settings({**ON, "HEXAPODS_DIARY_INK": "red"}, diary_lines=40)
     kind = next(kind for kind in installed_settings() if kind.feature == "diary")
     assert settings.of(kind) == kind(diary=True, diary_lines=40, diary_ink="red")  # type: ignore[call-arg]
@@ -97,7 +97,7 @@ def test_they_are_read_like_those_of_the_core() -> None:
         ),
     ],
 )
-def test_what_is_refused(environ: dict[str, str], message: str) -> None:
+def test_invalid_settings_of_a_feature_are_refused(environ: dict[str, str], message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         read_settings(environ)
 

@@ -23,7 +23,7 @@ def test_a_robot_from_a_file_is_trained_and_known_by_its_id(tmp_path: Path) -> N
     assert hx.load(tmp_path / "q.npz").config.robot == spot
 
 
-def test_what_is_no_robot_is_refused(tmp_path: Path) -> None:
+def test_a_file_without_a_robot_is_refused(tmp_path: Path) -> None:
     with pytest.raises(hx.InvalidInput, match="cannot read"):
         hx.load_robot(tmp_path / "no.xml")
     (tmp_path / "bad.json").write_text("{}")

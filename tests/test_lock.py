@@ -29,7 +29,7 @@ def test_every_package_is_pinned_by_hash_and_names_no_place(lock: Path) -> None:
     assert all(line.startswith("    --hash=sha256:") for line in packages)
 
 
-def test_what_runs_is_what_is_tested() -> None:
+def test_the_locks_of_the_product_and_of_the_tests_agree() -> None:
     assert pinned_versions(RUN_LOCK).items() <= pinned_versions(DEV_LOCK).items()
 
 

@@ -9,7 +9,7 @@ from distributed.system import MEMORY_LIMIT
 from hexapods import machine
 
 
-def test_they_are_those_that_dask_finds() -> None:
+def test_cores_and_memory_are_those_that_dask_counts() -> None:
     assert (machine.cores(), machine.memory_bytes()) == (CPU_COUNT, MEMORY_LIMIT)
 
 

@@ -33,7 +33,7 @@ def test_every_setting_is_there_with_its_default() -> None:
     assert set(re.findall(rf"{PREFIX}(\w+)", TEXT)) <= {*rows, "DATABASE_PASSWORD", "MEMORY_LIMIT"}
 
 
-def test_the_version_of_each_format_is_there() -> None:
+def test_the_document_has_the_version_of_each_format() -> None:
     rows = re.findall(r"^\| ([^|]+) \| (?:`|viser)[^|]* \| ([^|]*) ?\|$", TEXT, flags=re.MULTILINE)
     versions = {name: version.strip("` ") for name, version in rows}
     assert versions["database"].startswith(newest_revision())

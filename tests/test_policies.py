@@ -66,7 +66,7 @@ def test_a_model_sees_the_environments_observation() -> None:
     assert all(observation in space for observation in model.seen)
 
 
-def test_one_that_takes_action_masks_is_told_what_is_legal() -> None:
+def test_a_policy_that_takes_action_masks_gets_the_legal_actions() -> None:
     race = hx.race([hx.policy(MaskedModel().predict)], **QUICK)
     assert len(race.recording[0].steps) == 20
     assert race.recording[0].steps[0].action == (2, 4)
@@ -101,7 +101,7 @@ def test_an_illegal_action_is_an_error_that_says_what_is_legal(answer: Any, mess
         hx.race([hx.policy(lambda _: answer, name="Model"), "greedy"], **QUICK)
 
 
-def test_what_a_function_raises_is_raised() -> None:
+def test_an_exception_of_the_function_is_raised() -> None:
     def broken(observation: Any) -> int:
         raise KeyError("weights")
 

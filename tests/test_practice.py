@@ -70,7 +70,7 @@ def test_records_come_as_they_happen() -> None:
     assert [point.distance_m for point in done.curve] == evaluations
 
 
-def test_what_was_learned_is_there_at_any_moment() -> None:
+def test_the_training_so_far_is_available_at_any_moment() -> None:
     practice, whole = (
         hx.iter_train(evaluate_every=20, **QUICK),
         hx.train(evaluate_every=20, **QUICK),
@@ -88,7 +88,7 @@ def test_what_was_learned_is_there_at_any_moment() -> None:
     assert half.q_table_sha256 != whole.q_table_sha256
 
 
-def test_a_mistake_is_told_at_the_call_and_not_at_the_first_record() -> None:
+def test_an_invalid_argument_raises_at_the_call_and_not_at_the_first_record() -> None:
     with pytest.raises(hx.UnknownName):
         hx.iter_train("q-lerning")
 

@@ -166,7 +166,7 @@ def test_type_checkers_know_the_arguments() -> None:
             call()
 
 
-def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
+def test_a_saved_training_is_loaded(tmp_path: Path) -> None:
     training = hx.train(steps=40, simulator="kinematic", evaluate_every=20)
     loaded = hx.load(training.save(tmp_path / "q.npz"))
     assert isinstance(loaded, hx.Training)
@@ -196,7 +196,7 @@ def test_a_race_that_was_changed_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", [3, "", "a\0", b"q.npz", None])
-def test_what_is_no_path_is_refused(path: Any) -> None:
+def test_an_invalid_path_is_refused(path: Any) -> None:
     race = hx.race(["greedy"], steps=1, simulator="kinematic")
     for use in (hx.load, race.save, hx.View("", "").save):
         with pytest.raises(hx.InvalidInput, match=r"given by its path, a text or a Path, not by"):

@@ -28,7 +28,7 @@ def test_the_race_is_that_of_its_training(training: hx.Training) -> None:
     assert "<td>greedy</td>" in race._repr_html_()
 
 
-def test_it_is_the_same_again(training: hx.Training) -> None:
+def test_a_race_repeats_with_the_same_seed(training: hx.Training) -> None:
     lanes: list[Any] = [training, hx.lane("sarsa", keep_learning=True), hx.RandomWalk]
     first, second = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
     assert [s.total_distance_m for s in first.standings] == [
@@ -52,7 +52,7 @@ def test_the_world_is_not_that_of_the_practice() -> None:
     assert hx.race([noisy], world="noise", steps=2).config.world
 
 
-def test_steps_are_told() -> None:
+def test_on_step_is_called_for_each_step_of_each_lane() -> None:
     calls: list[None] = []
     hx.race(["greedy", "wave"], on_step=lambda: calls.append(None), **QUICK)
     assert len(calls) == 40

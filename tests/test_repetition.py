@@ -75,7 +75,7 @@ def test_one_value_is_a_list_of_one() -> None:
         ({"worlds": 3}, 'a text such as "ice" or "limp:legs=1,4", not 3'),
     ],
 )
-def test_what_is_no_list_of_these_is_refused(arguments: dict[str, Any], reason: str) -> None:
+def test_invalid_values_of_lists_are_refused(arguments: dict[str, Any], reason: str) -> None:
     with pytest.raises(hx.InvalidInput, match=reason):
         hx.experiment("sweep", **{**SWEEP, **arguments})
 

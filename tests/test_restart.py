@@ -58,7 +58,7 @@ def test_it_says_the_same(server: Served, before: dict[str, bytes]) -> None:
 
 
 @pytest.mark.parametrize("kind", ["races", "trainings"])
-def test_it_is_played_again(server: Served, kind: str) -> None:
+def test_a_stored_run_is_played_after_a_restart(server: Served, kind: str) -> None:
     run = server.client.get(f"/api/v1/{kind}").json()["items"][0]
     shown = server.client.put("/api/v1/stage", json={"run_id": run["id"], "speed": 8})
     assert shown.status_code == 200, shown.text

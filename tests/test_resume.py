@@ -115,7 +115,7 @@ def test_a_practice_that_was_left_goes_on(tmp_path: Path) -> None:
     assert_equal(hx.resume(saved), whole)
 
 
-def test_what_is_invalid_in_a_checkpoint_is_told_as_it_was_raised(tmp_path: Path) -> None:
+def test_an_invalid_value_in_a_checkpoint_keeps_the_message_of_its_error(tmp_path: Path) -> None:
     practice = hx.iter_train(**QUICK)
     next(practice)
     training = practice.training

@@ -80,7 +80,7 @@ def test_an_empty_variable_is_none() -> None:
     ],
     ids=str,
 )
-def test_what_is_refused(environ: dict[str, str], words: list[str]) -> None:
+def test_invalid_settings_are_refused(environ: dict[str, str], words: list[str]) -> None:
     with pytest.raises(InvalidInput) as error:
         read_settings({f"HEXAPODS_{name}": value for name, value in environ.items()})
     assert all(word in str(error.value) for word in words)

@@ -63,7 +63,7 @@ def installed(wheel: Path) -> Path:
     return environment / "bin"
 
 
-def test_it_is_small(installed: Path) -> None:
+def test_the_wheel_is_small(installed: Path) -> None:
     [packages] = installed.parent.glob("lib/python*/site-packages")
     files = [path for path in packages.rglob("*") if path.suffix != ".pyc" and path.is_file()]
     assert sum(path.stat().st_size for path in files) <= MAX_BYTES

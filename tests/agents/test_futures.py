@@ -23,7 +23,7 @@ def walker_of(agent: str, **settings: Any) -> Walker:
 
 
 @pytest.mark.parametrize("name", SEARCHES)
-def test_what_is_found_is_what_is_simulated(name: str) -> None:
+def test_futures_are_those_that_the_simulator_gives(name: str) -> None:
     walker = walker_of(name)
     assert isinstance(walker.agent, ExplainingSearch)
     for _ in range(4):
@@ -68,7 +68,7 @@ def test_two_step_adds_the_best_second_step() -> None:
         assert future.return_m == first + second
 
 
-def test_what_a_beam_dropped_is_known_less_far() -> None:
+def test_futures_that_a_beam_dropped_have_fewer_steps() -> None:
     walker = walker_of("beam", width=2, depth=3)
     action = walker.decide()
     assert isinstance(walker.agent, ExplainingSearch)

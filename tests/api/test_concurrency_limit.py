@@ -279,7 +279,7 @@ def test_nothing_is_begun_for_a_client_that_has_left() -> None:
     assert count == READING + 6
 
 
-def test_who_cannot_wait_is_told_why() -> None:
+def test_a_refused_request_gets_the_reason() -> None:
     async def scenario() -> list[Message]:
         answers: list[Message] = []
 

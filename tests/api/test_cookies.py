@@ -22,7 +22,7 @@ def test_names_that_can_be_ours_are_kept() -> None:
     }
 
 
-def test_values_are_taken_as_they_are() -> None:
+def test_values_of_cookies_are_not_decoded() -> None:
     cookies = kept_cookies(
         [r'hexapods_visitor_1="\"\054"; hexapods_room_1_A=a=b; hexapods_room_1_B']
     )

@@ -69,14 +69,14 @@ class BlockedRead:
         self.thread: threading.Thread | None = None
         read = services.store.list
 
-        def held(*args: Any, **filters: Any) -> Any:
+        def blocked_list(*args: Any, **filters: Any) -> Any:
             self.thread = threading.current_thread()
             page = read(*args, **filters) if moment == "after" else None
             self.reached.set()
             assert self.go_on.wait(LONG_S)
             return page or read(*args, **filters)
 
-        monkeypatch.setattr(services.store, "list", held)
+        monkeypatch.setattr(services.store, "list", blocked_list)
 
 
 def change(services: Services, state: Any) -> None:

@@ -233,7 +233,7 @@ def test_no_spelling_serves_a_file_of_a_feature_that_is_left_out(
     assert client.get(httpx2.URL(f"http://127.0.0.1:8000{path}")).status_code == 404
 
 
-def test_a_file_that_is_missing_is_told_with_the_way_home(api: Api) -> None:
+def test_a_missing_file_is_a_page_with_a_link_home(api: Api) -> None:
     answer = api.client.get("/static/nothing.js", headers={"accept": "text/html"})
     assert (answer.status_code, 'href="../"' in answer.text) == (404, True)
 

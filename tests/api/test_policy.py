@@ -45,7 +45,7 @@ def small_app() -> FastAPI:
     return app
 
 
-def asked(app: FastAPI, method: str, path: str) -> tuple[list[RoutePolicy], int, int]:
+def guarded_request(app: FastAPI, method: str, path: str) -> tuple[list[RoutePolicy], int, int]:
     """Return the policies that guards got for a request, its status, and how often it was read."""
     seen: list[RoutePolicy] = []
     reads, statuses = 0, [0]
@@ -75,10 +75,10 @@ def asked(app: FastAPI, method: str, path: str) -> tuple[list[RoutePolicy], int,
 
 
 def test_guards_get_the_policy_of_the_route_before_its_body_is_read() -> None:
-    seen, status, reads = asked(small_app(), "POST", "/api/things/1")
+    seen, status, reads = guarded_request(small_app(), "POST", "/api/things/1")
     assert [(policy.access, policy.starts) for policy in seen] == [(OPERATOR, True)]
     assert (status, reads) == (401, 0)
-    seen, status, _ = asked(small_app(), "GET", "/page")
+    seen, status, _ = guarded_request(small_app(), "GET", "/page")
     assert [policy.access for policy in seen] == [PUBLIC]
     assert status == 200
 
@@ -96,7 +96,7 @@ def test_guards_get_the_policy_of_the_route_before_its_body_is_read() -> None:
 def test_what_no_route_answers_is_guarded(
     method: str, path: str, access: Access, status: int
 ) -> None:
-    seen, got, _ = asked(small_app(), method, path)
+    seen, got, _ = guarded_request(small_app(), method, path)
     assert [policy.access for policy in seen] == [access]
     assert got == status
 

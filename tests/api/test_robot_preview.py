@@ -13,7 +13,7 @@ def preview_of(api: Api, body: dict[str, Any]) -> Any:
     return answer.json()
 
 
-def test_support_states_and_law_are_told_before_anything_runs(api: Api) -> None:
+def test_support_states_and_law_are_previewed(api: Api) -> None:
     preview = preview_of(api, {"gait": "tripod"})
 
     assert (preview["states"], preview["actions"]) == (25, 8)
@@ -70,7 +70,7 @@ def test_legs_that_cannot_be_so_are_named(api: Api) -> None:
     assert answer.json()["legs"] == [2, 3]
 
 
-def test_what_makes_no_sense_is_refused(api: Api) -> None:
+def test_an_invalid_gait_or_field_is_refused(api: Api) -> None:
     bodies: list[tuple[dict[str, Any], str]] = [({"robot": "dog"}, "six"), ({"steps": 3}, "steps")]
     for body, word in bodies:
         answer = api.call("POST", "/robots/preview", json={"gait": "tripod", **body})

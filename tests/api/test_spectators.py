@@ -45,7 +45,7 @@ def test_address_is_one_that_others_can_open(
         ({"token": TOKEN, "host": "0.0.0.0", "spectators": "token"}, "needs the token"),
     ],
 )
-def test_without_an_address_for_others_the_reason_is_told(
+def test_without_an_address_for_spectators_the_reason_is_returned(
     serve: Serve, settings: dict[str, object], words: str
 ) -> None:
     bearer = {"Authorization": f"Bearer {TOKEN}"}

@@ -97,7 +97,7 @@ def test_drawn_damages_are_of_every_kind_and_in_every_gait_of_the_paper() -> Non
         WalkingProblem(gait=gait, world=world)  # it can happen to the hexapod
 
 
-def test_what_it_does_not_know_is_refused_with_what_there_is() -> None:
+def test_an_unknown_protocol_or_task_is_refused_with_the_valid_names() -> None:
     with pytest.raises(UnknownName, match="protocol 'hexabench-2'; choose one of: hexabench-1"):
         protocol("hexabench-2")
     with pytest.raises(UnknownName, match="'moon'; choose one of: left-right-origin, left-"):

@@ -23,7 +23,7 @@ def test_a_score_file_repeats() -> None:
     assert version_note(small_benchmark().content) is None
 
 
-def test_a_changed_distance_is_told() -> None:
+def test_a_changed_distance_is_reported() -> None:
     content = changed()
     content["tasks"][0]["budgets"][1]["distances_m"][2] = 0.6
     outcome = verification(content, workers=1)
@@ -31,7 +31,7 @@ def test_a_changed_distance_is_told() -> None:
     assert not outcome.is_rounding
 
 
-def test_a_changed_score_is_told_although_no_run_is_repeated_for_it() -> None:
+def test_a_changed_score_is_reported_although_no_run_is_repeated_for_it() -> None:
     content = changed()
     content["aggregate"]["score"] = 0.99
     outcome = verification(content, workers=1, sample=1)
@@ -40,14 +40,14 @@ def test_a_changed_score_is_told_although_no_run_is_repeated_for_it() -> None:
     assert outcome.differences[0].startswith("aggregate score: 0.99 in the file, ")
 
 
-def test_another_best_known_distance_is_told() -> None:
+def test_another_best_known_distance_is_reported() -> None:
     content = changed()
     content["tasks"][0]["best_known_m"] = 0.3
     [difference] = verification(content, workers=1, sample=1).differences
     assert difference.startswith("tasks tripod best_known_m: 0.3 in the file, ")
 
 
-def test_last_digits_are_told_apart_from_other_differences() -> None:
+def test_last_digits_are_distinguished_from_other_differences() -> None:
     content = changed()
     content["tasks"][0]["budgets"][0]["distances_m"][0] += 1e-14
     outcome = verification(content, workers=1)
@@ -57,7 +57,7 @@ def test_last_digits_are_told_apart_from_other_differences() -> None:
     assert "mujoco 4" in (version_note(content) or "")
 
 
-def test_runs_that_were_left_out_are_told() -> None:
+def test_missing_runs_are_reported() -> None:
     content = changed()
     content["tasks"][0]["budgets"][0]["distances_m"].pop()
     outcome = verification(content, workers=1)

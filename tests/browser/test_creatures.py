@@ -19,7 +19,7 @@ def beforehand(dashboard: Dashboard) -> Locator:
 
 
 @pytest.mark.test
-def test_a_creature_brings_its_gait_is_told_beforehand_and_walks(
+def test_a_creature_brings_its_gait_is_previewed_and_walks(
     dashboard: Dashboard, server: Serving
 ) -> None:
     page = dashboard.page

@@ -19,7 +19,9 @@ FORM = {"simulator": "kinematic", "lanes": "q-learning,greedy", "steps": "100"}
 BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 10}
 
 
-def test_a_stranger_trains_and_is_told_what_is_left(dashboard: Dashboard, tmp_path: Path) -> None:
+def test_a_visitor_trains_and_reads_the_allowance_that_is_left(
+    dashboard: Dashboard, tmp_path: Path
+) -> None:
     with serving(tmp_path, token=TOKEN, demo=1, demo_steps_per_hour=500) as server:
         with server.api() as api:
             of_other = finished(api, "trainings", {**BODY, "name": "Of another"})

@@ -76,7 +76,9 @@ def test_back_restores_the_view_its_filters_and_the_form(
     )
 
 
-def test_what_a_link_says_in_vain_is_told(dashboard: Dashboard, shared_server: Serving) -> None:
+def test_invalid_fields_of_a_link_are_reported(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
     page = dashboard.page
     wrong = {"depth": "deep", "tab": "chart", "t": "soon", "alhpa": "0.5", "steps": "many"}
     dashboard.open(shared_server.link("nowhere", **wrong))

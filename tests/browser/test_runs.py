@@ -334,7 +334,9 @@ def test_the_view_fills_the_window_and_a_phone_scrolls_it(
     assert dashboard.violations() == []
 
 
-def test_a_lost_connection_is_told_and_the_list_stays(dashboard: Dashboard, tmp_path: Path) -> None:
+def test_a_lost_connection_is_shown_and_the_list_stays(
+    dashboard: Dashboard, tmp_path: Path
+) -> None:
     with opened(tmp_path, None) as store:
         store.create(training(RunIds()(), name="Kept", state="stopped"))
     server = Serving(tmp_path)

@@ -320,7 +320,9 @@ def enters_a_table(page: Page, name: str) -> None:
     expect(page.locator(":focus")).to_contain_text("Q-learning, a trained table")
 
 
-def test_what_is_not_there_is_told(flat_browser: Browser, school: Serving) -> None:
+def test_a_missing_tournament_is_reported_and_an_open_one_is_watched(
+    flat_browser: Browser, school: Serving
+) -> None:
     with school.api(TOKEN) as api:
         with phone(flat_browser) as none, phone(flat_browser) as watches:
             visit(none, school, "0123456789abcdef")

@@ -110,7 +110,9 @@ def test_wrong_values_of_each_field_stay_and_are_explained(
     expect(alpha).to_be_focused()
 
 
-def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving) -> None:
+def test_a_link_with_invalid_fields_keeps_their_texts(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
     page = dashboard.page
     wrong = {
         "gait": "nonsense",

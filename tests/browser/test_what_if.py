@@ -68,7 +68,7 @@ def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
     return items
 
 
-def test_a_server_that_is_away_is_told_and_asked_again(
+def test_an_unreachable_server_is_reported_and_asked_again(
     dashboard: Dashboard, server: Serving
 ) -> None:
     dashboard.open(server.link(depth="study"))

@@ -25,7 +25,7 @@ def commands() -> list[str]:
     return documented
 
 
-def test_there_are_commands() -> None:
+def test_the_documents_have_commands() -> None:
     assert len(commands()) > 40
 
 

@@ -42,7 +42,7 @@ def installed(tmp_path: Path) -> Iterator[Path]:
 
 
 @pytest.mark.usefixtures("installed")
-def test_its_entries_are_kept(tmp_path: Path) -> None:
+def test_entries_of_the_journal_are_stored(tmp_path: Path) -> None:
     data = tmp_path / "data"
     with running(Settings(data=data)) as api:
         assert api.get("/journal") == {"items": []}

@@ -18,5 +18,5 @@ def test_each_block_of_python_runs(block: str, tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-W", "error", "-c", block], check=True, cwd=tmp_path)
 
 
-def test_there_are_others() -> None:
+def test_the_readme_has_several_blocks() -> None:
     assert len(BLOCKS) > 1

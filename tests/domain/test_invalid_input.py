@@ -30,7 +30,7 @@ def test_an_invalid_argument_is_a_value_error(arguments: dict[str, Any]) -> None
         ({"settings": {"alpha": [1]}}, hx.InvalidInput, "alpha must be a number"),
     ],
 )
-def test_a_stored_value_that_is_invalid_is_told_as_it_was_raised(
+def test_an_invalid_stored_value_keeps_the_message_of_its_error(
     change: dict[str, Any], kind: type[hx.InvalidInput], reason: str
 ) -> None:
     stored = {**to_json(training_config(gait="left-right-origin")), **change}

@@ -18,7 +18,7 @@ PLAIN = st.recursive(
 
 @pytest.mark.test
 @given(PLAIN)
-def test_what_is_written_is_read_again(value: object) -> None:
+def test_plain_values_round_trip_through_yaml(value: object) -> None:
     assert read_plain(write_plain(value).encode(), "x", "lesson") == value
 
 
@@ -29,7 +29,7 @@ def test_what_is_written_is_read_again(value: object) -> None:
         ("a: |\n  one\n  two\n", {"a": "one\ntwo\n"}),
     ],
 )
-def test_words_mean_what_they_say(text: str, value: object) -> None:
+def test_plain_scalars_are_read_as_in_json(text: str, value: object) -> None:
     expected = value or {
         "a": "no", "b": True, "c": None, "d": 0.5, "e": -3, "f": "2026-01-01", "g": "0x10"
     }  # fmt: skip
@@ -51,7 +51,7 @@ def test_words_mean_what_they_say(text: str, value: object) -> None:
         ("[" + "1," * 130_000 + "]", "it has more than 10,000 names and values"),
     ],
 )
-def test_what_is_not_read_is_told_with_its_line(text: str, words: str) -> None:
+def test_yaml_that_is_refused_is_reported_with_its_line(text: str, words: str) -> None:
     if not words:  # a merge key is a name like any other
         assert read_plain(text.encode(), "x", "lesson") == {"a": "<<", "<<": {"b": 1}}
         return

@@ -35,7 +35,7 @@ def test_a_robot_has_fallen_when_its_torso_lies_on_the_ground(
     assert has_fallen(Robot(), pose(z, tilt_deg)) == fallen
 
 
-def test_many_poses_are_told_at_once() -> None:
+def test_many_poses_are_judged_at_once() -> None:
     cases = [(z, tilt) for z in (0.02, 0.03, 0.06, 0.1) for tilt in (0.0, 30.0, 45.0, 90.0, 180.0)]
     poses = [pose(z, tilt_deg) for z, tilt_deg in cases]
     for ground_m in (0.0, 0.02):

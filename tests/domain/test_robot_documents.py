@@ -132,7 +132,7 @@ def test_a_robot_is_written_and_pickled_where_its_document_is_not_known_any_more
     LIBRARY.forget([ID])
 
 
-def test_its_gait_is_told_unless_it_does_not_divide_its_legs(stored: Robot) -> None:
+def test_its_gait_is_used_unless_it_does_not_divide_its_legs(stored: Robot) -> None:
     assert own_gait(stored) == "one-by-one"
     LIBRARY.describe(ID, About("Rex", "trot"))
     assert own_gait(robot(ID)) == "trot"

@@ -24,7 +24,7 @@ def test_built_robot_differs_by_up_to_the_share() -> None:
     assert len({*deviations, *(angle / 60 for angle in angles)}) == len(VARIED) + 6
 
 
-def test_what_is_commanded_is_as_designed() -> None:
+def test_parameters_that_are_not_varied_are_as_designed() -> None:
     design, built_fields = asdict(Robot()), asdict(built(0.2))
     same = {name for name, value in built_fields.items() if value == design[name]}
 

@@ -157,7 +157,9 @@ def test_power_and_joints_of_a_leg_are_different_things() -> None:
 
 @pytest.mark.parametrize("earlier_kind", KINDS)
 @pytest.mark.parametrize("later_kind", KINDS)
-def test_what_is_accepted_has_conditions(earlier_kind: str, later_kind: str) -> None:
+def test_every_accepted_pair_of_disturbances_has_conditions(
+    earlier_kind: str, later_kind: str
+) -> None:
     """Every ordered pair of kinds is refused as it is made, or has conditions at any step."""
     first = parse_disturbance(EXAMPLES[earlier_kind])
     second = replace(parse_disturbance(EXAMPLES[later_kind]), at_step=4)
@@ -166,7 +168,7 @@ def test_what_is_accepted_has_conditions(earlier_kind: str, later_kind: str) -> 
         assert all(combined.as_of(step).as_of(0) == combined.as_of(step) for step in (0, 3, 4, 9))
 
 
-def test_what_ended_contradicts_nothing() -> None:
+def test_a_disturbance_that_has_ended_contradicts_no_other() -> None:
     assert World((Lost(legs=(2,), until_step=9), Limp(legs=(2,), at_step=9)))
     assert World((Slope(degrees=1, until_step=9), Slope(degrees=2, at_step=9)))
 

@@ -55,7 +55,7 @@ def test_push_is_an_arrow_from_where_it_comes(
     assert (math.sin(turn), -math.cos(turn)) == pytest.approx(from_side, abs=1e-6), "its tail"
 
 
-def test_both_are_removed_when_they_end(server: InProcessViser) -> None:
+def test_payload_and_push_are_removed_when_they_end(server: InProcessViser) -> None:
     spec, scene = race_of(1), StageScene(server)
     lane = frame_at_rest(spec).lanes[0]
     world = World((Payload(kg=1.0),))

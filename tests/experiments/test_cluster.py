@@ -84,7 +84,9 @@ def test_a_worker_that_takes_too_much_memory_is_killed() -> None:
     assert not workers_of(psutil.Process())
 
 
-def test_a_program_that_its_workers_cannot_import_is_told_how_to_start(tmp_path: Path) -> None:
+def test_a_program_that_its_workers_cannot_import_gets_an_error_with_the_guard(
+    tmp_path: Path,
+) -> None:
     script = tmp_path / "unguarded.py"
     script.write_text(
         "from hexapods.experiments.cluster import ClusterSpec\n"

@@ -51,7 +51,7 @@ def test_no_key_is_in_what_people_read(
     assert "Q-learning" in text
 
 
-def test_the_setting_of_a_sweep_that_spreads_most_is_told_in_words() -> None:
+def test_the_setting_of_a_sweep_that_spreads_most_is_named_in_words() -> None:
     texts = {section["heading"]: section["text"] for section in sample(*SAMPLES[1])["story"]}
     assert texts["One seed misleads"].startswith(
         "The setting that spreads most is Q-learning, α\u00a00.6, Left-right, "
@@ -89,7 +89,7 @@ def test_each_setting_and_trial_has_a_name_of_its_own(
         ("a world of a later version", "a world of a later version"),
     ],
 )
-def test_a_world_without_a_name_is_told_by_what_happens_in_it(world: str, name: str) -> None:
+def test_a_world_without_a_name_is_described_by_its_disturbances(world: str, name: str) -> None:
     assert world_name(world) == name
 
 

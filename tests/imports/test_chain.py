@@ -46,7 +46,7 @@ def test_angles_are_found_again(leg: LegChain) -> None:
     assert ((angles >= low) & (angles <= high)).all()
 
 
-def test_what_is_out_of_reach_is_told(leg: LegChain) -> None:
+def test_a_point_out_of_reach_has_a_finite_solution_with_its_error(leg: LegChain) -> None:
     angles, off = leg.solve(np.array([[0.5, 0, 0], [0.2, 0, 0.3]]), np.array([0.0, -0.4, 1.4]))
 
     assert (off > PRECISION * leg.length_m).all()

@@ -73,7 +73,7 @@ def test_its_sentence_comes_back() -> None:
         read_robot_file(dog({"FL": (0.2, 0.1), "FR": (0.2, -0.1)}).encode())
 
 
-def test_what_takes_too_long_is_given_up(temporary: Path) -> None:
+def test_a_file_that_takes_too_long_to_read_is_refused(temporary: Path) -> None:
     began_s = time.monotonic()
 
     with pytest.raises(DamagedFile, match=r"longer than 0\.01 s"):
@@ -85,7 +85,7 @@ def test_what_takes_too_long_is_given_up(temporary: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere memory is not limited")
-def test_what_takes_too_much_memory_is_given_up(temporary: Path) -> None:
+def test_a_file_that_takes_too_much_memory_is_refused(temporary: Path) -> None:
     mesh = stl(box_triangles((1, 1, 1), cells=170))
     shapes = "".join(
         f'<visual><geometry><mesh filename="{name}.stl"/></geometry></visual>' for name in "ab"
@@ -100,7 +100,7 @@ def test_what_takes_too_much_memory_is_given_up(temporary: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the name of a process is set on Linux")
-def test_a_child_that_is_killed_is_told() -> None:
+def test_a_killed_child_process_is_reported() -> None:
     def kill() -> None:
         while not (processes := children()):
             time.sleep(0.005)

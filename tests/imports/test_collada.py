@@ -7,7 +7,7 @@ from hexapods.domain.errors import DamagedFile
 from hexapods.domain.types import FloatArray
 from hexapods.imports.collada import read_collada
 from tests.imports.robots import bug, read, zipped
-from tests.imports.test_mjcf import told
+from tests.imports.test_mjcf import mentions
 from tests.imports.test_urdf import MESH, decoded
 
 SQUARE = "0 0 0 2 0 0 2 1 0 0 1 0"
@@ -84,7 +84,7 @@ def test_nodes_and_units_place_them() -> None:
         (b"<COLLADA>", "no whole XML document"),
     ],
 )
-def test_what_is_damaged_is_refused(data: bytes, said: str) -> None:
+def test_a_damaged_collada_file_is_refused(data: bytes, said: str) -> None:
     with pytest.raises(DamagedFile, match=re.escape(said)):
         read_collada(data, "square.dae")
 
@@ -98,4 +98,4 @@ def test_a_robot_is_drawn_by_them() -> None:
 
     vertices, _ = decoded(robot.model.links[0].mesh)
     assert np.ptp(vertices, axis=0) == pytest.approx([0.5, 1, 0], abs=1e-6)
-    assert told(damaged.repairs, "a mesh was left out: hull.dae has no triangles")
+    assert mentions(damaged.repairs, "a mesh was left out: hull.dae has no triangles")

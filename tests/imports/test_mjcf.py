@@ -10,7 +10,7 @@ from tests.imports.robots import FOUR, HOME, dog, read
 from tests.imports.same_motion import compare, feet_and_center
 
 
-def told(sentences: tuple[str, ...], words: str) -> bool:
+def mentions(sentences: tuple[str, ...], words: str) -> bool:
     return any(words in sentence for sentence in sentences)
 
 
@@ -27,8 +27,8 @@ def test_a_quadruped_is_read_with_its_legs_numbered_from_the_front_right() -> No
     assert robot.reaches_grid
     assert robot.body_height_m == pytest.approx(2 * 0.2 * np.cos(0.7), abs=1e-6)
     assert robot.model.feet[0].radius_m == pytest.approx(0.02)
-    assert told(robot.guesses, "keyframe home")
-    assert told(robot.guesses, "by the names of the legs in front and behind")
+    assert mentions(robot.guesses, "keyframe home")
+    assert mentions(robot.guesses, "by the names of the legs in front and behind")
 
 
 def test_it_moves_as_in_mujoco() -> None:
@@ -85,8 +85,8 @@ def test_motors_become_servos_with_their_torque() -> None:
     assert joint.servo_kp == pytest.approx(21 / 0.05)
     assert joint.servo_kv == pytest.approx(0.025 * 21 / 0.05)
     assert joint.armature == pytest.approx(0.021)
-    assert told(robot.repairs, "12 motors became position servos")
-    assert told(robot.repairs, "armature of 12 joints was raised")
+    assert mentions(robot.repairs, "12 motors became position servos")
+    assert mentions(robot.repairs, "armature of 12 joints was raised")
 
 
 @pytest.mark.parametrize(
@@ -96,14 +96,14 @@ def test_motors_become_servos_with_their_torque() -> None:
 def test_without_a_torque_limit_one_is_guessed(actuators: str) -> None:
     robot = read(dog(actuators=actuators))
 
-    assert told(robot.guesses, "largest torque of all joints is")
+    assert mentions(robot.guesses, "largest torque of all joints is")
     assert 2 < robot.model.joints_of(1)[0].servo_torque_nm < 50
 
 
 def test_a_welded_base_becomes_free() -> None:
     robot = read(dog(base=""))
 
-    assert told(robot.repairs, "trunk was fixed to the world")
+    assert mentions(robot.repairs, "trunk was fixed to the world")
     assert robot.mass_kg == pytest.approx(8.4)
 
 
@@ -116,7 +116,7 @@ def test_an_arm_holds() -> None:
     robot = read(dog(on_torso=arm))
 
     assert len(robot.legs) == 4
-    assert told(robot.repairs, "joints of no leg, which hold: shoulder, elbow")
+    assert mentions(robot.repairs, "joints of no leg, which hold: shoulder, elbow")
     assert robot.model.links[0].mass_kg == pytest.approx(5.9)
     assert "arm_upper" in robot.feet
 
@@ -128,7 +128,7 @@ def test_wheels_are_locked_and_become_feet() -> None:
     robot = read(dog(foot="", on_shank=wheel))
 
     assert [len(leg.joints) for leg in robot.legs] == [3, 3, 3, 3]
-    assert told(robot.repairs, "wheels, which were locked: FL_wheel")
+    assert mentions(robot.repairs, "wheels, which were locked: FL_wheel")
     assert robot.model.feet[0].radius_m == pytest.approx(0.05, rel=0.02)
 
 
@@ -143,7 +143,7 @@ def test_a_spine_is_locked_and_the_legs_behind_it_found() -> None:
     robot = read(text)
 
     assert len(robot.legs) == 4
-    assert told(robot.repairs, "joints of no leg, which hold: spine")
+    assert mentions(robot.repairs, "joints of no leg, which hold: spine")
 
 
 def test_a_crouch_is_no_home() -> None:
@@ -152,7 +152,7 @@ def test_a_crouch_is_no_home() -> None:
 
     robot = read(dog(keyframes={"home": crouch}))
 
-    assert told(robot.guesses, "with bent knees, as was searched: in keyframe home")
+    assert mentions(robot.guesses, "with bent knees, as was searched: in keyframe home")
     assert robot.reaches_grid
     assert robot.body_height_m > 0.2
 
@@ -162,7 +162,7 @@ def test_the_second_keyframe_is_taken_if_the_first_is_none() -> None:
 
     robot = read(dog(keyframes={"home": crouch, "stand": HOME}))
 
-    assert told(robot.guesses, "as in keyframe stand")
+    assert mentions(robot.guesses, "as in keyframe stand")
 
 
 def test_uneven_feet_are_levelled() -> None:
@@ -175,26 +175,26 @@ def test_uneven_feet_are_levelled() -> None:
         for joint in robot.model.joints_of(leg)
     }
 
-    assert told(robot.repairs, "mm uneven; now level")
+    assert mentions(robot.repairs, "mm uneven; now level")
     assert np.ptp(feet_and_center(robot, home)[0][:, 2]) < 1e-4
 
 
 def test_joints_without_limits_get_some() -> None:
     robot = read(dog(limits=False))
 
-    assert told(robot.guesses, "all joints have no limits in the file")
+    assert mentions(robot.guesses, "all joints have no limits in the file")
     for joint in robot.model.joints_of(2):
         assert np.ptp(joint.limits_rad) == pytest.approx(np.pi)
 
 
-def test_what_has_no_name_gets_one() -> None:
+def test_elements_without_a_name_get_one() -> None:
     text = re.sub(r' name="\w+"', "", dog(actuators=""))
 
     robot = read(text)
 
     assert len(robot.legs) == 4
     assert len({leg.foot for leg in robot.legs}) == 4
-    assert told(robot.guesses, "as in most files, since no name tells")
+    assert mentions(robot.guesses, "as in most files, since no name tells")
 
 
 def test_two_joints_of_one_body_are_two_links() -> None:
@@ -223,13 +223,13 @@ def test_two_joints_of_one_body_are_two_links() -> None:
     assert worst < 1e-6
 
 
-def test_closed_loops_are_left_out_and_told() -> None:
+def test_closed_loops_are_left_out_and_noted() -> None:
     loop = (
         '<equality><connect body1="FL_calf" body2="FR_calf" anchor="0 0 0"/></equality>'
         '<sensor><gyro site="none"/></sensor>'
     )
 
-    assert told(read(dog(sections=loop)).repairs, "left out what connects bodies")
+    assert mentions(read(dog(sections=loop)).repairs, "left out what connects bodies")
 
 
 def test_impossible_inertias_are_replaced() -> None:
@@ -237,7 +237,7 @@ def test_impossible_inertias_are_replaced() -> None:
 
     robot = read(dog(on_torso=f'<body name="pack" pos="0 0 0.1">{inertial}</body>'))
 
-    assert told(robot.repairs, "inertias that no body can have")
+    assert mentions(robot.repairs, "inertias that no body can have")
     assert robot.mass_kg == pytest.approx(9.4)
 
 
@@ -246,7 +246,7 @@ def test_what_stands_beside_the_robot_is_left_out() -> None:
 
     robot = read(dog(sections=ball))
 
-    assert told(robot.repairs, "not joined to the robot: ball")
+    assert mentions(robot.repairs, "not joined to the robot: ball")
     assert robot.mass_kg == pytest.approx(8.4)
 
 
@@ -256,7 +256,7 @@ class TestChoices:
 
         assert robot.forward_deg == 180
         assert [leg.foot for leg in robot.legs] == ["RL", "RR", "FR", "FL"]
-        assert not told(robot.guesses, "forward")
+        assert not mentions(robot.guesses, "forward")
 
     def test_feet(self) -> None:
         on_shank = '<body name="{leg}_end" pos="0 0 -0.19"><site name="{leg}_site"/></body>'
@@ -265,7 +265,7 @@ class TestChoices:
         robot = read(dog(on_shank=on_shank), choices=Choices(feet=names))
 
         assert {leg.foot for leg in robot.legs} == {*names}
-        assert not told(robot.guesses, "legs are the chains")
+        assert not mentions(robot.guesses, "legs are the chains")
 
     def test_home_and_keyframe(self) -> None:
         text = dog(keyframes={"home": HOME, "low": "0 0 0.3 1 0 0 0" + 4 * " 0 1.1 -2.2"})
@@ -285,7 +285,7 @@ class TestChoices:
 
         assert robot.gait == "pace"
         assert (joint.servo_torque_nm, joint.servo_kp, joint.servo_kv) == (9, 100, 3)
-        assert not told(robot.guesses, "torque")
+        assert not mentions(robot.guesses, "torque")
 
     @pytest.mark.parametrize(
         ("choices", "said"),

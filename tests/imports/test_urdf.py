@@ -12,7 +12,7 @@ from hexapods.imports.choices import Choices
 from hexapods.imports.drawing import MAX_BASE64
 from tests.imports.robots import INERTIAL, SIX, box_triangles, bug, read, stl, text_stl, zipped
 from tests.imports.same_motion import compare
-from tests.imports.test_mjcf import told
+from tests.imports.test_mjcf import mentions
 
 MESH = '<visual><geometry><mesh filename="{file}" scale="0.5 0.5 0.5"/></geometry></visual>'
 BOX = (0.4, 0.2, 0.08)
@@ -39,9 +39,9 @@ def test_a_hexapod_is_read() -> None:
     assert [joint.name for joint in robot.model.joints_of(6)] == ["coxa", "femur", "tibia"]
     assert robot.model.joints_of(1)[0].servo_torque_nm == 2.5
     assert robot.reaches_grid
-    assert told(robot.repairs, "base_link was fixed to the world")
-    assert told(robot.repairs, "no joint had an actuator")
-    assert told(robot.guesses, "with bent knees, as was searched")
+    assert mentions(robot.repairs, "base_link was fixed to the world")
+    assert mentions(robot.repairs, "no joint had an actuator")
+    assert mentions(robot.guesses, "with bent knees, as was searched")
     # Legs stretch outward at the angles 0, where the torso lies on the ground.
     assert robot.body_height_m > 0.04
 
@@ -82,7 +82,7 @@ def test_links_without_inertia_get_some() -> None:
     robot = read(bug(inertial=""))
     masses = {link.name: link.mass_kg for link in robot.model.links}
 
-    assert told(robot.guesses, "the file gives no mass for coxa_rf")
+    assert mentions(robot.guesses, "the file gives no mass for coxa_rf")
     assert min(masses.values()) > 1e-4
     # By its box, of which half is full.
     assert masses["femur_rf"] == pytest.approx(0.5 * 500 * 0.02 * 0.02 * 0.06, rel=0.1)
@@ -98,14 +98,14 @@ def test_a_robot_without_any_mass_is_weighed_by_its_shapes() -> None:
     robot = read(bug(inertial="", torso_inertial=""))
 
     assert robot.model.links[0].mass_kg == pytest.approx(0.5 * 500 * 0.2 * 0.1 * 0.04)
-    assert told(robot.guesses, "the file gives no mass for")
+    assert mentions(robot.guesses, "the file gives no mass for")
 
 
 @pytest.mark.parametrize("ixx", ["-1e-4", "0"])
 def test_inertias_that_are_not_positive_are_replaced(ixx: str) -> None:
     robot = read(bug(inertial=INERTIAL.replace('ixx="1e-4"', f'ixx="{ixx}"')))
 
-    assert told(robot.repairs, "was not positive")
+    assert mentions(robot.repairs, "was not positive")
     assert robot.mass_kg == pytest.approx(3.3, rel=1e-6)
 
 
@@ -113,14 +113,16 @@ def test_inertias_that_are_not_positive_are_replaced(ixx: str) -> None:
 def test_an_effort_that_is_none_is_guessed(effort: str, is_guessed: bool) -> None:
     robot = read(bug(effort=effort))
 
-    assert told(robot.guesses, "largest torque of all joints") is is_guessed
+    assert mentions(robot.guesses, "largest torque of all joints") is is_guessed
     assert 0.1 < robot.model.joints_of(1)[0].servo_torque_nm < 10
 
 
 def test_joints_that_turn_without_end_get_limits() -> None:
     robot = read(bug(kind="continuous"))
 
-    assert told(robot.guesses, "all joints have no limits in the file: 90° to each side of home")
+    assert mentions(
+        robot.guesses, "all joints have no limits in the file: 90° to each side of home"
+    )
 
 
 def test_meshes_of_a_package_are_drawn_where_they_are() -> None:
@@ -139,7 +141,7 @@ def test_meshes_of_a_package_are_drawn_where_they_are() -> None:
     # Body x is to the right, so that the length of the box lies along y.
     assert np.ptp(vertices, axis=0) == pytest.approx([0.1, 0.2, 0.04], abs=1e-6)
     assert len(faces) == 12
-    assert not told(robot.repairs, "mesh")
+    assert not mentions(robot.repairs, "mesh")
 
 
 def test_text_meshes_are_read() -> None:
@@ -153,13 +155,13 @@ def test_text_meshes_are_read() -> None:
     assert np.ptp(vertices, axis=0) == pytest.approx([0.1, 0.2, 0.04], abs=1e-6)
 
 
-def test_missing_and_unreadable_meshes_are_told() -> None:
+def test_missing_and_unreadable_meshes_are_noted() -> None:
     torso = "".join(MESH.format(file=f"package://bug/meshes/{name}") for name in ("a.stl", "b.3ds"))
 
     robot = read(zipped({"bug.urdf": bug(torso=torso), "b.3ds": "MM"}))
 
-    assert told(robot.repairs, "1 mesh is missing from the upload")
-    assert told(robot.repairs, "1 mesh is left out, since only .stl, .obj, .dae are read")
+    assert mentions(robot.repairs, "1 mesh is missing from the upload")
+    assert mentions(robot.repairs, "1 mesh is left out, since only .stl, .obj, .dae are read")
 
 
 def test_a_link_of_which_a_mesh_is_missing_is_drawn_by_its_simple_shapes_too() -> None:
@@ -187,7 +189,7 @@ def test_large_meshes_are_simplified() -> None:
 
     assert sum(mesh.triangles for mesh in meshes) <= MAX_TRIANGLES
     assert sum(len(mesh.vertices) + len(mesh.faces) for mesh in meshes) <= MAX_BASE64
-    assert told(robot.repairs, "mesh hull.stl was simplified from 172,800 to")
+    assert mentions(robot.repairs, "mesh hull.stl was simplified from 172,800 to")
     vertices, _ = decoded(robot.model.links[0].mesh)
     assert np.ptp(vertices, axis=0) == pytest.approx([0.1, 0.2, 0.04], rel=0.05)
 
@@ -220,7 +222,7 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
     best, chosen = read(zipped(files)), read(zipped(files), choices=Choices(file="small.urdf"))
 
     assert (best.file, len(best.legs)) == ("bug.urdf", 6)
-    assert told(best.guesses, "the robot is bug.urdf, not: scene.xml, small.urdf")
+    assert mentions(best.guesses, "the robot is bug.urdf, not: scene.xml, small.urdf")
     assert (chosen.file, len(chosen.legs)) == ("small.urdf", 4)
     with pytest.raises(InvalidInput, match=r"the zip has no 'big\.urdf'"):
         read(zipped(files), choices=Choices(file="big.urdf"))

@@ -24,7 +24,7 @@ LAUGHS = b'<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a name="&c;"/>
         (b"", "is no whole XML document"),
     ],
 )
-def test_what_exceeds_a_bound_is_refused(data: bytes, said: str) -> None:
+def test_xml_that_exceeds_a_bound_is_refused(data: bytes, said: str) -> None:
     with pytest.raises(DamagedFile, match=re.escape(said)) as raised:
         read_xml(data, "robot.xml")
     assert str(raised.value).count("robot.xml") == 1

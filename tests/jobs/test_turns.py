@@ -66,7 +66,7 @@ def test_an_operator_ends_the_turn_of_a_spectator() -> None:
     assert done == ["operator"]
 
 
-def test_who_has_left_or_finds_too_many_waits_no_more() -> None:
+def test_a_client_that_has_left_or_finds_the_queue_full_waits_no_more() -> None:
     turns, has_left, left = Turns("questions", MAX_WAITING), threading.Event(), []
 
     def check() -> None:

@@ -45,7 +45,7 @@ def test_one_client_holds_no_more_than_its_share() -> None:
     asyncio.run(scenario())
 
 
-def test_who_has_left_gets_no_slot_and_does_not_fill_the_queue() -> None:
+def test_a_client_that_has_left_gets_no_slot_and_does_not_fill_the_queue() -> None:
     async def scenario() -> None:
         semaphore, departed = FairSemaphore(1, max_waiting=2), set[int]()
         await semaphore.acquire("a")

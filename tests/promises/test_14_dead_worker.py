@@ -14,7 +14,7 @@ from collections.abc import Callable
 import psutil
 import pytest
 
-from tests.features.experiments.sweeps import sweep, tried
+from tests.features.experiments.sweeps import results_of_trials, sweep
 from tests.promises.length import at_length
 from tests.served import BODY, ENDLESS, Served
 from tests.timeouts import LONG_S
@@ -98,5 +98,5 @@ def test_a_dead_servers_experiment_can_be_resumed_and_leaves_no_process(
     assert ended["state"] == "finished", ended
     rows = server.client.get(f"{path}/trials").json()["trials"]
     assert all(row in rows for row in stored_trials), "some were repeated"
-    plain = json.loads(json.dumps(tried(sweep(seeds=SEEDS, steps=(3000,)))))
+    plain = json.loads(json.dumps(results_of_trials(sweep(seeds=SEEDS, steps=(3000,)))))
     assert {row["key"]: row["result"] for row in rows} == plain

@@ -262,7 +262,7 @@ def shape(file: str) -> str:
     return f'<visual><geometry><mesh filename="{file}"/></geometry></visual>'
 
 
-def test_there_are_fifty() -> None:
+def test_at_least_fifty_hostile_files_are_tried() -> None:
     assert len(HOSTILE) >= 50
 
 

@@ -275,7 +275,7 @@ def test_nobody_reads_reveals_and_later_cards_of_a_lesson_that_is_taught(server:
         assert SECRET.encode() in desk.call("GET", address)
 
 
-def test_what_belongs_to_the_room_can_be_read(desks: dict[str, Desk]) -> None:
+def test_a_participant_reads_the_data_of_the_room(desks: dict[str, Desk]) -> None:
     for desk in desks.values():
         room = f"/r/{desk.code}"
         for path in ("/", "/static/favicon.svg", "/api/v1/stage", "/api/v1/options"):
@@ -328,7 +328,7 @@ def test_after_the_reveal_others_are_seen(server: Serving) -> None:
     assert desk.other_run.encode() in results
 
 
-def test_events_tell_of_own_runs_alone(server: Serving) -> None:
+def test_events_report_only_the_participants_own_runs(server: Serving) -> None:
     desk = room_of(server, "one-run-proves-nothing")
     other, path = desk.join(), f"/api/v1/rooms/{desk.code}/runs"
 

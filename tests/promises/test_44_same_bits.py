@@ -62,7 +62,7 @@ def test_with_other_instructions_it_is_said_from_which_step_on_and_that_ranks_ho
     assert lines[2] == f"{folder / 't.json'} repeats but for the last digits of distances."
 
 
-def test_what_was_changed_is_told_with_other_instructions_too(folder: Path) -> None:
+def test_a_changed_file_is_reported_with_other_instructions_too(folder: Path) -> None:
     tournament = _tournament()
     entry = tournament.entries[0]
     better = (replace(entry.judgements[0], distance_m=9.0), *entry.judgements[1:])

@@ -27,7 +27,7 @@ ON_COMMAND_LINE = ("--gait", "left-right-origin", "--simulator", "kinematic")
 TRIPPED = "I tripped"
 
 
-def test_failed_trials_are_told_where_the_result_is_returned_and_printed(
+def test_failed_trials_are_reported_where_the_result_is_returned_and_printed(
     page: Page, tmp_path: Path
 ) -> None:
     with pytest.warns(UserWarning, match=r"2 of 5 trials failed.*Clumsy.*I tripped"):
@@ -176,7 +176,7 @@ def test_a_training_that_fails_has_no_table(tmp_path: Path) -> None:
     assert not (tmp_path / "q.npz").exists()
 
 
-def test_a_lane_that_failed_is_told_where_the_race_is_shown() -> None:
+def test_a_failed_lane_is_reported_where_the_race_is_shown() -> None:
     done = hx.race(["wave", hx.lane(Clumsy, keep_learning=True)], simulator="kinematic", steps=5)
     for shown in (repr(done), done._repr_html_()):
         assert TRIPPED in shown

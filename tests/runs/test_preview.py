@@ -107,14 +107,14 @@ def test_where_no_groups_help_none_are_offered() -> None:
     assert three.better is None
 
 
-def test_a_table_that_would_not_fit_is_told_with_its_states() -> None:
+def test_a_table_that_does_not_fit_is_previewed_with_its_states() -> None:
     single = preview_of("one-by-one", "centipede")
 
     assert single.states == 5**12
     assert not single.table_fits
 
 
-def test_reach_is_told_by_group_where_feet_may_not_go_everywhere() -> None:
+def test_reach_is_given_by_group_where_feet_may_not_go_everywhere() -> None:
     near, far = (
         preview_of("one-by-one", grid_side_m=0.02),
         preview_of("one-by-one", grid_side_m=0.06),
@@ -128,7 +128,7 @@ def test_reach_is_told_by_group_where_feet_may_not_go_everywhere() -> None:
     assert near.largest_side_m == 0.125
 
 
-def test_a_grid_out_of_reach_is_told_at_its_leg() -> None:
+def test_a_grid_out_of_reach_names_the_leg() -> None:
     out = preview_of("tripod", grid_side_m=0.3)
 
     assert out.out_of_reach is not None
@@ -138,7 +138,7 @@ def test_a_grid_out_of_reach_is_told_at_its_leg() -> None:
     assert out.legs[3].out_of_reach.startswith("leg 4 cannot reach cell")
 
 
-def test_only_the_leg_that_does_not_reach_is_told() -> None:
+def test_only_the_leg_that_does_not_reach_is_marked() -> None:
     legs = [{"azimuth_deg": 60.0 * n, "radius_m": 0.1} for n in range(6)]
     short = preview_of("tripod", {"legs": [*legs[:2], {**legs[2], "tibia_m": 0.02}, *legs[3:]]})
 

@@ -265,7 +265,7 @@ def test_race_that_was_resumed_and_computed_between_two_frames_is_shown_anew(
     assert [lane.step for lane in parts.watch_to_end()[-1].lanes] == [12, 12]
 
 
-def test_pages_are_told_that_the_race_to_come_was_deleted(parts: StageParts) -> None:
+def test_pages_learn_that_the_announced_race_was_deleted(parts: StageParts) -> None:
     training, _ = parts.running_training(60)
     config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=(LaneConfig(agent="greedy"),))
     race = parts.create(config, waiting_for=(training.id,), started_at=datetime.now(UTC))

@@ -16,14 +16,14 @@ def walker(steps: int) -> LaneRecording:
     return lane(*taken)
 
 
-def told(steps: int) -> dict[str, object]:
+def lane_timeline(steps: int) -> dict[str, object]:
     (lane,) = timeline([walker(steps)], [None], 100, "wall")["lanes"]
     shown: dict[str, object] = lane
     return shown
 
 
-def test_each_step_is_told_with_its_thinking() -> None:
-    shown = told(3)
+def test_each_step_is_listed_with_its_decision_time() -> None:
+    shown = lane_timeline(3)
 
     assert (shown["steps"], shown["stride"]) == (3, 1)
     assert shown["futures"] == [1, 2, 3]
@@ -36,13 +36,13 @@ def test_each_step_is_told_with_its_thinking() -> None:
 @pytest.mark.parametrize(
     ("steps", "stride", "strides"), [(4, 1, 4), (5, 2, 3), (8, 2, 4), (9, 3, 3)]
 )
-def test_of_a_long_race_strides_of_steps_are_told(
+def test_a_long_race_is_listed_in_strides_of_steps(
     monkeypatch: pytest.MonkeyPatch, steps: int, stride: int, strides: int
 ) -> None:
     """With the distance at the end of each, and as long a time of thinking as its steps had."""
-    whole = told(steps)
+    whole = lane_timeline(steps)
     monkeypatch.setattr(timelines, "MAX_STRIDES", 4)
-    shown = told(steps)
+    shown = lane_timeline(steps)
 
     assert (shown["steps"], shown["stride"]) == (steps, stride)
     assert isinstance(shown["futures"], list)

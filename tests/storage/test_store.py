@@ -155,15 +155,15 @@ def test_list_finds_a_part_of_a_name_or_id_literally(store: RunStore) -> None:
     ]
     store.create(*runs)
 
-    def found(search: str) -> list[str]:
+    def names_with(search: str) -> list[str]:
         return [run.name for run in store.list(search=search).runs]
 
-    assert found("TRIPOD") == ["Slow tripod"]
-    assert found("100%") == ["ripple 100%"], "% is no wildcard"
-    assert found("a_b") == ["a_b"], "_ is no wildcard"
-    assert found("02") == ["ripple 100 steps"], "by id"
-    assert found("\\") == []
-    assert found("") == found("0") == [run.name for run in reversed(runs)]
+    assert names_with("TRIPOD") == ["Slow tripod"]
+    assert names_with("100%") == ["ripple 100%"], "% is no wildcard"
+    assert names_with("a_b") == ["a_b"], "_ is no wildcard"
+    assert names_with("02") == ["ripple 100 steps"], "by id"
+    assert names_with("\\") == []
+    assert names_with("") == names_with("0") == [run.name for run in reversed(runs)]
     page = store.list(kind="training", search="ripple", limit=1)
     assert [run.name for run in page.runs] == ["ripple 100 steps"]
     page = store.list(kind="training", search="ripple", limit=1, cursor=page.next_cursor)
@@ -255,15 +255,15 @@ def test_tags_and_notes_are_kept_and_found(store: RunStore) -> None:
     store.update("a", notes="one\n\ttwo", name="A")
     assert (store.get("a").tags, store.get("a").notes) == (("ice", "50 %"), "one\n\ttwo")
 
-    def found(**filters: Any) -> list[str]:
+    def ids_of(**filters: Any) -> list[str]:
         return [run.id for run in store.list(**filters).runs]
 
-    assert found(tag="ICE") == ["a"], "the whole tag, A to Z alike"
-    assert found(tag="50 %") == ["a"]
-    assert found(tag="50") == found(tag="%") == []
-    assert found(search="ice") == ["b", "a"], "in tags and in notes"
+    assert ids_of(tag="ICE") == ["a"], "the whole tag, A to Z alike"
+    assert ids_of(tag="50 %") == ["a"]
+    assert ids_of(tag="50") == ids_of(tag="%") == []
+    assert ids_of(search="ice") == ["b", "a"], "in tags and in notes"
     store.update("a", tags=())
-    assert found(tag="ice") == []
+    assert ids_of(tag="ice") == []
 
 
 def test_progress_is_visible_at_once_and_survives_changes(store: RunStore) -> None:

@@ -40,7 +40,7 @@ def test_a_creature_walks_in_its_gait() -> None:
     assert training_of(entry_of(robot=PRESETS["stiff"]), rules).gait == rules.gait
 
 
-def test_the_references_are_there() -> None:
+def test_the_references_are_greedy_random_walk_and_linear_model() -> None:
     agents = [reference.agent for reference in references(rules_of())]
     assert agents == ["greedy", "random-walk", "linear-model"]
 

@@ -50,7 +50,7 @@ def test_pairs_tell_apart_what_overlapping_intervals_do_not() -> None:
     assert better.not_separable == worse.not_separable == ()
 
 
-def test_equal_results_are_not_told_apart() -> None:
+def test_equal_results_are_not_separable() -> None:
     same = [0.1, 0.2, 0.3, 0.4, 0.5]
     rounded = [distance_m + 1e-16 for distance_m in same]
     standings = ranking({7: same, 2: same, 5: rounded}, {2: 3})
@@ -64,7 +64,7 @@ def test_equal_results_are_not_told_apart() -> None:
     assert [standing.number for standing in ranking({7: same, 2: same}, {})] == [2, 7]
 
 
-def test_there_may_be_none_or_one() -> None:
+def test_no_entries_and_a_single_entry_are_ranked() -> None:
     assert ranking({}, {}) == []
     assert ranking({4: [0.5] * 5}, {4: 1}) == [
         RankedEntry(

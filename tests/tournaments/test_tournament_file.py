@@ -142,7 +142,7 @@ def test_infinite_distances_are_refused(tournament: TournamentFile) -> None:
         read_file(write_file(tournament).replace(distance, b"1e999"), "it")
 
 
-def test_a_changed_table_is_told(tournament: TournamentFile) -> None:
+def test_a_changed_table_is_refused(tournament: TournamentFile) -> None:
     digest = sha256_of(table_file())
     text = tournament.tables[digest]
     middle = len(text) // 2

@@ -138,7 +138,7 @@ def test_a_file_of_before_the_limit_of_transitions_was_a_rule_repeats_with_that_
     )
 
 
-def test_one_digit_of_a_distance_is_told(kinematic: TournamentFile) -> None:
+def test_one_changed_digit_of_a_distance_is_reported(kinematic: TournamentFile) -> None:
     entry = kinematic.entries[3]
     distance = entry.judgements[2].distance_m
     other = float(f"{distance:.16g}"[:-1] + ("1" if f"{distance:.16g}"[-1] != "1" else "2"))
@@ -150,7 +150,7 @@ def test_one_digit_of_a_distance_is_told(kinematic: TournamentFile) -> None:
     assert difference.endswith(f", flat): {other!r} m in the file, {distance!r} m repeated.")
 
 
-def test_a_result_that_was_improved_with_its_standing_is_told(kinematic: TournamentFile) -> None:
+def test_an_improved_result_is_reported_with_its_standing(kinematic: TournamentFile) -> None:
     entry = kinematic.entries[3]
     best = tuple(replace(judgement, distance_m=0.9) for judgement in entry.judgements)
     changed = edited(kinematic, 3, judgements=best)
@@ -166,7 +166,7 @@ def test_a_result_that_was_improved_with_its_standing_is_told(kinematic: Tournam
     )
 
 
-def test_another_secret_is_told(kinematic: TournamentFile) -> None:
+def test_another_secret_is_reported(kinematic: TournamentFile) -> None:
     differences = sentences(replace(kinematic, secret=OTHER_SECRET))
     assert differences[0].startswith(
         "The secret is not the one to which the tournament was committed"
@@ -174,14 +174,14 @@ def test_another_secret_is_told(kinematic: TournamentFile) -> None:
     assert any(sentence.startswith("Entry 3 (entrant 3), draw 1 ") for sentence in differences)
 
 
-def test_a_draw_that_was_removed_is_told(kinematic: TournamentFile) -> None:
+def test_a_removed_judgement_is_reported(kinematic: TournamentFile) -> None:
     fewer = kinematic.entries[3].judgements[:-1]
     assert sentences(edited(kinematic, 3, judgements=fewer)) == [
         "Entry 3 (entrant 3) has 4 judgements in the file; the rules have 5 draws."
     ]
 
 
-def test_standings_in_another_order_are_told(kinematic: TournamentFile) -> None:
+def test_standings_in_another_order_are_reported(kinematic: TournamentFile) -> None:
     first, second, *rest = kinematic.standings
     [difference] = sentences(replace(kinematic, standings=(second, first, *rest)))
     assert difference.startswith(
@@ -189,7 +189,7 @@ def test_standings_in_another_order_are_told(kinematic: TournamentFile) -> None:
     )
 
 
-def test_standings_of_others_are_told(kinematic: TournamentFile) -> None:
+def test_exchanged_missing_and_additional_standings_are_reported(kinematic: TournamentFile) -> None:
     first, second, *rest = kinematic.standings
     swapped = (
         replace(second, number=first.number),
@@ -209,7 +209,7 @@ def test_standings_of_others_are_told(kinematic: TournamentFile) -> None:
     ]
 
 
-def test_a_missing_and_a_weakened_reference_are_told(kinematic: TournamentFile) -> None:
+def test_a_missing_and_a_weakened_reference_are_reported(kinematic: TournamentFile) -> None:
     weak = replace(kinematic.entries[2].entry, steps=1)
     differences = sentences(edited(kinematic, 2, entry=weak))
     assert differences[0] == "Entry 2 is not the reference linear-model with its usual settings."
@@ -217,7 +217,7 @@ def test_a_missing_and_a_weakened_reference_are_told(kinematic: TournamentFile) 
     assert differences[0] == "Entry 0, the reference greedy, is missing."
 
 
-def test_an_entry_that_the_rules_do_not_allow_is_told(kinematic: TournamentFile) -> None:
+def test_an_entry_that_the_rules_do_not_allow_is_reported(kinematic: TournamentFile) -> None:
     differences = sentences(edited(kinematic, 3, entry=EntryConfig(agent="q-learning", steps=61)))
     assert differences == [
         "Entry 3 (entrant 3) cannot be judged: steps must be from 1 to 60, the budget of this "
@@ -226,7 +226,7 @@ def test_an_entry_that_the_rules_do_not_allow_is_told(kinematic: TournamentFile)
     ]
 
 
-def test_a_table_that_is_not_there_and_another_one_are_told(kinematic: TournamentFile) -> None:
+def test_a_missing_and_an_exchanged_table_are_reported(kinematic: TournamentFile) -> None:
     digest = sha256_of(table_file())
     [difference, _] = sentences(replace(kinematic, tables={}))
     assert (

@@ -95,7 +95,7 @@ def test_path_without_slash_redirects(client: TestClient) -> None:
         "playbackPath=/api/v1/races/7/recording",
     ],
 )
-def test_allowed_parameters_are_kept(client: TestClient, query: str) -> None:
+def test_allowed_query_parameters_are_accepted(client: TestClient, query: str) -> None:
     assert client.get(f"/viewer/?{query}").status_code == 200
 
 

@@ -26,7 +26,7 @@ def by_alpha(
     return lambda setting: around(distance_of_alpha[alpha_of(setting)], spread_m)
 
 
-def test_what_is_clearly_ahead_walks_farthest() -> None:
+def test_a_combination_that_is_clearly_ahead_walks_farthest() -> None:
     far = by_alpha(0.1, 0.3, 0.4, spread_m=0.001)
     finding = finding_of("sweep", far, seeds=5, alpha=(0.1, 0.3, 0.6))
     assert finding == "α 0.6 walks farthest: 80 % (80 to 80) of greedy's distance."

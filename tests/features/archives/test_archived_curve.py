@@ -23,7 +23,7 @@ def test_a_curve_is_read_as_it_was_written(rows: list[dict[str, Any]], indent: i
 
 
 @pytest.mark.parametrize("rows", [[ROW, ROW], [*LONG, ROW]], ids=len)
-def test_a_curve_out_of_order_is_told(rows: list[dict[str, Any]]) -> None:
+def test_a_curve_out_of_order_is_refused(rows: list[dict[str, Any]]) -> None:
     assert not read_curve(json.dumps(rows).encode()).is_ordered
 
 

@@ -115,7 +115,7 @@ def test_a_table_of_another_stored_robot_brings_that_too(tmp_path: Path) -> None
         ),
     ],
 )
-def test_a_robot_that_does_not_fit_is_refused(
+def test_a_robot_that_does_not_fit_the_run_is_refused(
     exported: bytes, change: object, message: str
 ) -> None:
     files = members(exported)

@@ -160,7 +160,7 @@ def test_a_link_that_looks_like_a_script_is_text() -> None:
     assert "href" not in html_of(lesson.cards[0]).text
 
 
-def test_a_card_without_a_lesson_is_told(api: Api) -> None:
+def test_a_card_without_a_lesson_is_refused(api: Api) -> None:
     refused(api.call("POST", "/rooms", json={"lesson": "nothing"}), 404, "no lesson")
     refused(api.call("POST", "/rooms", json={"lesson": {"title": "x"}}), 422, "ards is missing")
     refused(api.client.get("/l/nothing"), 404, "no lesson")

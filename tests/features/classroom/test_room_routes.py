@@ -135,19 +135,19 @@ def test_a_class_predicts_runs_and_sees_what_came_of_it(school: Class) -> None:
     for run in runs:
         school.finished(run)
 
-    def own(view: dict[str, Any]) -> dict[str, Any]:
+    def results_of_card_1(view: dict[str, Any]) -> dict[str, Any]:
         result: dict[str, Any] = next(card for card in view["cards"] if card["card"] == 1)
         return result
 
-    before = own(pupils[1].get(f"/rooms/{code}/results"))
+    before = results_of_card_1(pupils[1].get(f"/rooms/{code}/results"))
     assert [entry["seed"] for entry in before["entries"]] == [1]
     assert (before["distances_m"], before["interval"], before["answer"]) == ([], None, None)
     assert (before["predicted"], before["finished"]) == (4, 4)
     assert before["entries"][0]["score"] is None
-    teachers = own(school.teacher.get(f"/rooms/{code}/results?card=1"))
+    teachers = results_of_card_1(school.teacher.get(f"/rooms/{code}/results?card=1"))
     assert [entry["name"] for entry in teachers["entries"]] == [v["me"]["name"] for v in views]
     assert school.teacher.call("POST", f"/rooms/{code}/reveal").status_code == 200
-    after = own(pupils[1].get(f"/rooms/{code}/results"))
+    after = results_of_card_1(pupils[1].get(f"/rooms/{code}/results"))
     distances = sorted(
         entry["run"]["distance_m"] for entry in after["entries"] if entry["run"] is not None
     )
@@ -354,16 +354,16 @@ def test_names_are_hidden_and_participants_approved(school: Class) -> None:
         assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
     school.teacher.call("POST", f"/rooms/{code}/reveal", json={"card": 4})
 
-    def others() -> list[tuple[int, str | None]]:
+    def names_of_others() -> list[tuple[int, str | None]]:
         (result,) = first.get(f"/rooms/{code}/results?card=4")["cards"]
         return [(x["seed"], x["name"]) for x in result["entries"] if not x["is_own"]]
 
-    assert others() == []
+    assert names_of_others() == []
     path = f"/rooms/{code}/participants/1"
     view = school.teacher.call("PATCH", path, json={"is_approved": True}).json()
-    assert others() == [(1, view["people"][1]["name"])]
+    assert names_of_others() == [(1, view["people"][1]["name"])]
     school.teacher.call("PATCH", path, json={"is_name_hidden": True})
-    assert others() == [(1, None)]
+    assert names_of_others() == [(1, None)]
     csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
     assert csv.startswith("card,seed,")
     assert view["people"][1]["name"] not in csv
@@ -640,7 +640,7 @@ def test_a_code_for_phones_is_there_where_phones_can_come(serve: Callable[..., A
         ("PATCH", "/participants/0", {"is_approved": 1}, "is_approved"),
     ],
 )
-def test_what_cannot_be_is_told(
+def test_invalid_requests_are_refused_with_the_reason(
     school: Class, method: str, path: str, body: Any, words: str
 ) -> None:
     code = school.room()

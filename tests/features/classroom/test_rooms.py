@@ -37,7 +37,7 @@ def store(
         yield store
 
 
-def test_all_is_there_after_a_restart(store: RunStore) -> None:
+def test_rooms_are_restored_after_a_restart(store: RunStore) -> None:
     rooms = Rooms(store)
     code = rooms.create(LESSON, needs_approval=True).code
     first, second = rooms.join(code), rooms.join(code)

@@ -289,7 +289,7 @@ def test_an_operators_run_that_waits_for_a_visitors_keeps_it_until_it_has_starte
     assert visitors.count == 0
 
 
-def test_what_fails_is_tried_again(
+def test_a_failed_deletion_is_tried_again(
     store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
 ) -> None:
     run = start(visitors, jobs, training(steps=60, pace=0.5)).run

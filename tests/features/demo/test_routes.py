@@ -64,7 +64,7 @@ def test_a_stranger_trains_and_has_the_rest_of_the_allowance(stranger: Api) -> N
     assert stranger.get("/allowance")["runs"][-1] == again.json()["id"]
 
 
-def test_beyond_the_allowance_it_is_told_what_is_allowed_and_when(stranger: Api) -> None:
+def test_a_start_beyond_the_allowance_is_refused_with_the_limit_and_the_time(stranger: Api) -> None:
     stranger.finished(stranger.start("/trainings", {**WALK, "steps": 800}))
     answer = stranger.call("POST", "/trainings", json={**WALK, "steps": 500})
     problem = refused(answer, 429)
@@ -156,7 +156,9 @@ def test_a_first_start_whose_answer_was_lost_is_of_who_repeats_it(stranger: Api)
     assert stranger.call("DELETE", f"/trainings/{run_id}", headers=X).status_code == 204
 
 
-def test_it_is_also_of_one_who_has_become_a_visitor_meanwhile(stranger: Api) -> None:
+def test_a_repeated_start_belongs_to_a_client_that_became_a_visitor_meanwhile(
+    stranger: Api,
+) -> None:
     key = secrets.token_urlsafe(16)
     run_id = lost(stranger, key)
     other = stranger.start("/trainings", SHORT)
@@ -223,7 +225,7 @@ def test_operators_list_visitors_and_no_one_else_does(stranger: Api) -> None:
     assert cookie not in str(listed)
 
 
-def test_what_a_crawler_may_read(stranger: Api) -> None:
+def test_robots_txt_keeps_crawlers_from_the_api(stranger: Api) -> None:
     answer = stranger.client.get("/robots.txt")
     assert answer.headers["content-type"].startswith("text/plain")
     assert "Disallow: /api/" in answer.text

@@ -9,7 +9,7 @@ from hexapods.domain.errors import InvalidInput
 TOKEN = "a-token-for-tests"
 
 
-def test_a_demo_is_stricter_unless_it_is_told_otherwise() -> None:
+def test_a_demo_has_stricter_defaults_that_settings_override() -> None:
     environ = {"HEXAPODS_DEMO": "yes", "HEXAPODS_TOKEN": TOKEN}
     demo, usual = read_settings(environ), read_settings({})
     assert demo.of(DemoSettings).demo
@@ -45,7 +45,7 @@ def test_an_option_turns_it_on() -> None:
     ],
     ids=str,
 )
-def test_what_is_refused(environ: dict[str, str], words: list[str]) -> None:
+def test_invalid_settings_of_a_demo_are_refused(environ: dict[str, str], words: list[str]) -> None:
     with pytest.raises(InvalidInput) as error:
         read_settings({f"HEXAPODS_{name}": value for name, value in environ.items()})
     assert all(word in str(error.value) for word in words)

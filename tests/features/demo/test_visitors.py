@@ -98,9 +98,9 @@ def test_the_steps_of_an_hour_come_back_and_a_restart_forgets_none(
     for visitors_now in (visitors, make_visitors()):
         with pytest.raises(
             Busy, match=r"10 of 100 steps an hour left, and this takes 20.*40 min"
-        ) as it:
+        ) as busy:
             visitors_now.start(key, HOME, training(steps=20), queue)
-        assert it.value.retry_after_s == 2400
+        assert busy.value.retry_after_s == 2400
     clock.pass_time(minutes=40)
     assert make_visitors().start(key, HOME, training(steps=60), queue).key == key
 
@@ -128,7 +128,9 @@ def test_deleted_runs_count_but_are_not_kept(store: RunStore, visitors: Visitors
     assert (used.steps, used.kept) == (50, ())
 
 
-def test_so_many_are_kept(store: RunStore, clock: Clock, visitors: Visitors) -> None:
+def test_a_visitor_keeps_at_most_four_runs(
+    store: RunStore, clock: Clock, visitors: Visitors
+) -> None:
     queue, key = stored(store), ""
     for _ in range(SMALL.kept):
         key = visitors.start(key, HOME, training(steps=10), queue).key

@@ -15,7 +15,7 @@ def sweep(seeds: int = 3, **more: Any) -> ExperimentConfig:
     return experiment_config("sweep", {"seeds": seeds, "simulator": "kinematic", **fields})
 
 
-def tried(config: ExperimentConfig) -> dict[str, Any]:
+def results_of_trials(config: ExperimentConfig) -> dict[str, Any]:
     """Run all trials in this process; results by key, with tuples in place of lists."""
     return {trial.key: run_trial(trial.config).as_json() for trial in Plan(config).trials()}
 

@@ -24,7 +24,7 @@ from hexapods.experiments.plan import Plan
 from hexapods.experiments.result import TrialCounts
 from tests.experiments.clusters import workers_of
 from tests.features.experiments.ended_experiments import experiment_result
-from tests.features.experiments.sweeps import stored_results, sweep, tried
+from tests.features.experiments.sweeps import results_of_trials, stored_results, sweep
 from tests.jobs.test_jobs import pid_of
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.served import is_job
@@ -100,7 +100,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     jobs.resume(run.id)
     finished = wait_until_ended(store, run)
     assert (finished.state, finished.done, finished.error) == ("finished", 25, None)
-    assert stored_results(store, run.id) == tried(config)
+    assert stored_results(store, run.id) == results_of_trials(config)
     times = {row["key"]: row["compute_s"] for row in Trials(store.database).get(run.id)}
     assert all(times[row["key"]] == row["compute_s"] for row in stored), "some were repeated"
     with pytest.raises(Conflict, match="failed or interrupted or paused or stopped"):
@@ -149,7 +149,7 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space(
         monkeypatch.setattr(FullTrials, "room", 1_000)
         jobs.resume(run.id)
         assert wait_until_ended(store, run).state == "finished"
-        assert stored_results(store, run.id) == tried(sweep())
+        assert stored_results(store, run.id) == results_of_trials(sweep())
     finally:
         jobs.close()
 

@@ -10,7 +10,7 @@ import pytest
 
 from hexapods.experiments.config import experiment_config
 from tests.api.calls import Api, refused
-from tests.features.experiments.sweeps import tried
+from tests.features.experiments.sweeps import results_of_trials
 from tests.features.needing import needs
 
 Serve = Callable[..., Api]
@@ -67,7 +67,7 @@ def test_trials_are_returned_as_json_and_csv(swept: dict[str, Any], api: Api) ->
     rows = api.get(f"/experiments/{swept['id']}/trials")["trials"]
     values = {"seeds": 3, "simulator": "kinematic", "gaits": ("left-right-origin",)}
     config = experiment_config("sweep", {**values, "steps": (40,), "alpha": (0.1, 0.5)})
-    plain = json.loads(json.dumps(tried(config)))
+    plain = json.loads(json.dumps(results_of_trials(config)))
     assert {row["key"]: row["result"] for row in rows} == plain
     answer = api.call("GET", f"/experiments/{swept['id']}/trials?format=csv")
     assert answer.headers["content-type"] == "text/csv; charset=utf-8"

@@ -130,7 +130,7 @@ def test_a_practice_that_forgot_steps_or_changes_is_another() -> None:
         practice.learner_at(80, steps, (change,))
 
 
-def test_an_agent_that_breaks_is_told_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_agent_that_raises_is_named_in_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
     practice, steps = practice_of("q-learning"), steps_by("q-learning")
     learner = practice.learner_at(3, steps, ())
 

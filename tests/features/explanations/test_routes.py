@@ -104,7 +104,7 @@ def test_every_step_of_a_training_explains_the_stored_value(
         }
 
 
-def test_a_choice_is_told_in_words(api: Api, trained: dict[str, Any]) -> None:
+def test_a_choice_is_explained_in_sentences(api: Api, trained: dict[str, Any]) -> None:
     explanations = [explained(api, trained["id"], step=step) for step in (1, STEPS)]
     first, last = (" ".join(explanation["choice"]["sentences"]) for explanation in explanations)
 
@@ -231,7 +231,7 @@ def test_a_training_without_a_log_says_so(api: Api, trained: dict[str, Any]) -> 
     refused(api.call("GET", f"/runs/{run['id']}/explain"), 409, "has no log of its steps")
 
 
-def test_a_learner_that_loses_is_told_why(api: Api, trained: dict[str, Any]) -> None:
+def test_the_loss_of_a_learner_is_explained(api: Api, trained: dict[str, Any]) -> None:
     lanes = [{"agent": "q-learning", "training_id": trained["id"]}, {"agent": "greedy"}]
     race = api.finished(api.race(lanes=[*lanes, {"agent": "linear-model"}]))
     loss = api.get(f"/races/{race['id']}/loss", params={"lane": 0})
@@ -255,7 +255,7 @@ def test_a_learner_that_loses_is_told_why(api: Api, trained: dict[str, Any]) -> 
     assert api.get(f"/races/{race['id']}/loss", params={"lane": 0}) == loss
 
 
-def test_a_learner_that_practises_in_the_race_is_told_why_it_loses(api: Api) -> None:
+def test_the_loss_of_a_learner_that_practises_in_the_race_is_explained(api: Api) -> None:
     lanes = [{"agent": "sarsa", "keep_learning": True}, {"agent": "greedy"}]
     race = api.finished(api.race(steps=20, lanes=lanes))
     loss = api.get(f"/races/{race['id']}/loss", params={"lane": 0, "clock": "free"})

@@ -60,7 +60,7 @@ def test_servos_that_cannot_follow_are_named_and_the_walk_is_slowed_down(folder:
     assert result["too_slow"] == []
 
 
-def test_servos_that_can_follow_or_whose_speed_is_not_known_are_told_so(folder: Path) -> None:
+def test_servos_that_can_follow_or_have_no_known_speed_are_reported(folder: Path) -> None:
     fast_servo = "{board: 9, channel: 9, us_at_zero: 1500, us_per_rad: 400, speed_deg_s: 9000}"
     for text, sentence in (
         (map_text("speed_deg_s: 9000"), "The servos can follow at 70 % of the no-load speed; the"),

@@ -9,7 +9,7 @@ from tests.api.conftest import running
 START = {"card": None, "shows_why": False, "is_blank": False, "code": "large"}
 
 
-def test_it_is_set_and_told_with_the_stage(api: Api) -> None:
+def test_the_presentation_is_set_and_returned_with_the_stage(api: Api) -> None:
     assert api.get("/stage")["presentation"] == START
     shown = {**START, "card": 3, "code": "small"}
     assert api.call("PUT", "/stage", json={"presentation": shown}).json()["presentation"] == shown
@@ -19,7 +19,7 @@ def test_it_is_set_and_told_with_the_stage(api: Api) -> None:
     assert api.get("/stage")["presentation"] == START
 
 
-def test_what_is_not_valid_is_refused(api: Api) -> None:
+def test_an_invalid_presentation_is_refused(api: Api) -> None:
     invalid: list[tuple[object, str]] = [
         ({"card": 0}, "presentation.card must be the number of a card, from 1 to 99, or null"),
         ({"card": 100}, "presentation.card must be the number of a card, from 1 to 99, or null"),

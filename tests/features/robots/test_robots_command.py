@@ -18,7 +18,7 @@ def test_built_in_robots_are_listed(tmp_path: Path) -> None:
     assert all(name in listed for name in CREATURES)
 
 
-def test_a_robot_that_tips_is_told_so_and_what_would_stand(tmp_path: Path) -> None:
+def test_a_robot_that_tips_is_reported_with_groups_that_stand(tmp_path: Path) -> None:
     shown = in_process("robots", "show", "dog", "--gait", "pace", folder=tmp_path).stdout
 
     assert "dog, pace: 4 legs" in shown

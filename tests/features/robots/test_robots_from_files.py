@@ -97,7 +97,9 @@ def test_it_is_corrected_and_has_another_id(api: Api, spot: dict[str, Any]) -> N
     assert api.call("PATCH", path, json={"choices": {}}).json()["id"] == spot["id"]
 
 
-def test_one_that_runs_use_is_kept_and_hidden(api: Api, spot: dict[str, Any]) -> None:
+def test_a_corrected_robot_that_runs_use_is_hidden_and_not_deleted(
+    api: Api, spot: dict[str, Any]
+) -> None:
     run = api.finished(api.start("/trainings", {**SHORT, "robot": {"id": spot["id"]}}))
     path = f"/robots/{spot['id']}"
     changed = api.call("PATCH", path, json={"choices": {"servo_kp": 30}}).json()
@@ -134,7 +136,7 @@ def test_a_wrong_choice_changes_nothing(api: Api, spot: dict[str, Any]) -> None:
         (b"PK\3\4 no zip", ""),
     ],
 )
-def test_what_is_no_robot_is_refused_and_nothing_kept(
+def test_a_file_without_a_robot_is_refused_and_nothing_is_stored(
     api: Api, content: str | bytes, word: str
 ) -> None:
     refused(send(api, content, "Bad", "bad.xml"), 422, word)

@@ -166,7 +166,9 @@ def test_options_list_stored_robots_beside_those_that_are_built_in(
         (b'{"format":"hexapods-robot-2","robot":{}}', "has format 'hexapods-robot-2'"),
     ],
 )
-def test_what_is_no_robot_is_refused_and_nothing_kept(api: Api, content: bytes, word: str) -> None:
+def test_an_invalid_robot_is_refused_and_nothing_is_stored(
+    api: Api, content: bytes, word: str
+) -> None:
     refused(api.call("POST", "/robots", content=content), 422, word)
     assert api.get("/robots?hidden=true")["items"] == []
 

@@ -53,7 +53,7 @@ def test_a_robot_is_imported_shown_hidden_renamed_and_deleted(folder: Path) -> N
     assert names(folder, "--hidden") == []
 
 
-def test_what_cannot_be_is_refused(folder: Path) -> None:
+def test_invalid_files_names_and_robots_are_refused(folder: Path) -> None:
     def refused(*arguments: str) -> str:
         data = ("--data", str(folder / "data"))
         return refusal("robots", *arguments, *data, folder=folder, run=in_process)

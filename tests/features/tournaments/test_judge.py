@@ -128,7 +128,7 @@ def test_a_draw_has_more_time_where_searches_may_simulate_more() -> None:
 
 
 @pytest.mark.promises
-def test_what_nobody_waits_for_is_given_up(store: RunStore) -> None:
+def test_judging_a_deleted_tournament_is_cancelled(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(SLOW, "", None, 6)
     with judging(tournaments) as working:

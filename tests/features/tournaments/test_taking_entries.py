@@ -58,7 +58,7 @@ def judged(tournaments: Tournaments, tournament: Tournament, number: int) -> Non
         tournaments.keep(tournament, number, draw, Judgement(0.1 * draw))
 
 
-def test_all_is_there_after_a_restart(store: RunStore) -> None:
+def test_tournaments_are_restored_after_a_restart(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = opened_one(tournaments)
     data = b"\x00\xff" * 100
@@ -169,7 +169,7 @@ def test_entries_of_an_hour_are_counted_by_the_database(quick: RunStore) -> None
     assert restarted.get(tournament.id).left(ONE, now) == (2, None)
 
 
-def test_limits_are_told(quick: RunStore) -> None:
+def test_entries_over_a_limit_are_refused_with_the_limit(quick: RunStore) -> None:
     tournaments = Tournaments(quick)
     tournament = opened_one(tournaments)
     for message, entry in (

@@ -38,7 +38,7 @@ def test_a_tournament_repeats(folder: Path) -> None:
     assert "entrant 3 (3)  Q-learning" in done.stdout
 
 
-def test_a_changed_result_is_told_and_the_exit_code_is_1(folder: Path) -> None:
+def test_a_changed_result_is_reported_with_exit_code_1(folder: Path) -> None:
     done = in_process("verify", "changed.json", folder=folder)
     assert done.returncode == 1
     assert "Entry 3 (entrant 3), draw 1 (seed " in done.stdout

@@ -67,7 +67,7 @@ def test_what_ifs_of_spectators_are_limited_by_address(serve: Serve) -> None:
     assert len(other.json()["chosen"]["distances_m"]) == other.json()["seeds"]
 
 
-def test_they_have_a_kind_of_work_of_their_own(api: Api) -> None:
+def test_what_ifs_have_slots_of_their_own(api: Api) -> None:
     of_routes = policies(api.client.app)  # type: ignore[arg-type]
     assert of_routes["post", "/api/v1/what-if"].work is WHAT_IF
 

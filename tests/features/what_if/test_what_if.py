@@ -196,7 +196,7 @@ def test_waiting_for_a_core_is_neither_charged_nor_refused(
     assert charged[0] < limit_s < answer.compute_s
 
 
-def test_nothing_is_computed_for_who_has_left(what_if: WhatIf, pool: ProcessPool) -> None:
+def test_nothing_is_computed_for_a_client_that_has_left(what_if: WhatIf, pool: ProcessPool) -> None:
     def left() -> None:
         raise Busy("the client has closed its connection", 1)
 

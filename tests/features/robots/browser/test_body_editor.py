@@ -29,7 +29,7 @@ def leg(editor: Locator, number: int) -> Locator:
     return editor.get_by_role("button", name=re.compile(rf"^Leg {number} of group"))
 
 
-def known(editor: Locator) -> Locator:
+def preview_in(editor: Locator) -> Locator:
     return editor.get_by_role("group", name="Known before it walks")
 
 
@@ -82,7 +82,7 @@ def test_a_body_is_edited_used_trained_and_opened_again(
     )
     page.reload()
     editor = opened(dashboard)
-    expect(known(editor)).to_contain_text("6 legs: 25 states")
+    expect(preview_in(editor)).to_contain_text("6 legs: 25 states")
     expect(leg(editor, 1)).to_have_accessible_name(re.compile(f"{moved_m} m right, 0.11 m ahead"))
     # What is left with Escape changes nothing.
     leg(editor, 3).press("ArrowLeft")
@@ -96,7 +96,7 @@ def is_told_and_accessible(dashboard: Dashboard, editor: Locator) -> None:
     expect(leg(editor, 1)).to_have_accessible_name(
         "Leg 1 of group 1: 0.06 m right, 0.11 m ahead, points to 20°"
     )
-    expect(known(editor)).to_contain_text("4 legs: 25 states, 8 moves · stands by 0 mm")
+    expect(preview_in(editor)).to_contain_text("4 legs: 25 states, 8 moves · stands by 0 mm")
     assert dashboard.violations_in_both_themes() == []
     picture = editor.get_by_role("slider", name="Direction from which the robot is seen")
     assert picture.locator("path.limb").count() == 4
@@ -132,7 +132,7 @@ def move_legs(page: Page, editor: Locator) -> float:
 def add_legs_and_shorten_one(dashboard: Dashboard, editor: Locator) -> None:
     """What the server tells follows; what is impossible is said at its leg, and can be mended."""
     editor.get_by_role("button", name="Add a leg").click()
-    expect(known(editor)).to_contain_text("6 legs: 25 states")
+    expect(preview_in(editor)).to_contain_text("6 legs: 25 states")
     expect(editor.locator(".body-picture path.limb")).to_have_count(6)
     tibia = editor.get_by_role("spinbutton", name="Tibia, as a number")
     tibia.fill("0.03")
@@ -155,9 +155,9 @@ def test_the_editor_on_a_phone(flat_browser: Browser, shared_server: Serving) ->
         assert dashboard.scroll_width() == NARROW["width"]
         assert dashboard.violations() == []
         assert dashboard.small_targets(THUMB_PX) == []
-        expect(known(editor)).to_contain_text("It tips while legs")
+        expect(preview_in(editor)).to_contain_text("It tips while legs")
         editor.get_by_role("button", name="Take groups with which it stands").tap()
-        expect(known(editor)).to_contain_text("stands by")
+        expect(preview_in(editor)).to_contain_text("stands by")
         leg(editor, 2).tap()
         # With its mirror image two would be left.
         removing = editor.get_by_role("button", name=re.compile("^Remove leg"))
@@ -165,7 +165,7 @@ def test_the_editor_on_a_phone(flat_browser: Browser, shared_server: Serving) ->
         expect(removing).to_have_attribute("title", "A robot has at least 3 legs.")
         editor.get_by_role("checkbox", name="Mirrored").uncheck()
         removing.tap()
-        expect(known(editor)).to_contain_text("3 legs")
+        expect(preview_in(editor)).to_contain_text("3 legs")
         editor.get_by_role("button", name="Cancel").tap()
         assert "robot=dog" in page.url
         assert dashboard.complaints == []

@@ -103,7 +103,7 @@ def test_a_link_brings_the_body_to_a_server_that_does_not_have_it(
     expect(dashboard.panel.get_by_text("Custom: stiff, femur 0.09")).to_be_visible()
 
 
-def test_another_page_is_told_of_a_robot(dashboard: Dashboard, server: Serving) -> None:
+def test_another_page_learns_of_a_new_robot(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?depth=try&tab=train")
     choice = page.get_by_label("Robot", exact=True)
