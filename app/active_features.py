@@ -199,7 +199,7 @@ def _check_names(classes: Iterable[type[Feature]]) -> None:
 
 
 def keep_named_robots(catalogue: Catalogue, store: RunStore) -> None:
-    """Let a store delete no robot that a feature names, whether it is left out or not.
+    """Register the tables of all features that name robots, so that the store keeps these robots.
 
     A table that is missing, as of a feature that has never been there, names none.
     """
@@ -211,7 +211,7 @@ def keep_named_robots(catalogue: Catalogue, store: RunStore) -> None:
 
 
 class _LeftOut:
-    """What features that are left out still hide.
+    """Runs that features still hide although they are left out of this server.
 
     Attributes:
         visible_runs: the condition that none of them hides a run; None if they hide none.

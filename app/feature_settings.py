@@ -48,7 +48,7 @@ class FeatureSettings:
 
     @property
     def audience(self) -> str | None:
-        """Who a shared link is for, if not for spectators, such as `Readers (may write)`."""
+        """Title of a shared link, such as `Readers (may write)`; None if it is for spectators."""
         return None
 
     def stricter_defaults(self) -> Mapping[str, Any]:

@@ -131,7 +131,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         store,
         recordings,
         bus,
-        # Who owns a run sees it on a page of their own.
+        # The owner of a run sees it on another page, so it is not offered to the stage.
         on_queued=lambda run_id: features.owner_of(run_id) or shared.stage.offer(run_id),
         owner_of=features.owner_of,
         niceness=settings.job_niceness,
@@ -327,7 +327,7 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
         OwnershipLost: if another server took over the database.
     """
     settings.prepare_data()
-    # Of all files that this process and its children create: no other user may open them.
+    # No other user may open the files that this process and its children create.
     os.umask(0o077)
     start_fork_server(_PRELOADED)
     return_freed_memory()
@@ -387,7 +387,7 @@ class _Server(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
-            # What is there now stays, and need not be looked through for garbage.
+            # Objects that exist now stay: the garbage collector need not look through them.
             gc.freeze()
             self._listener.listen(BACKLOG)
             write_address_file(self._settings.data, _local_address(self._listener))

@@ -165,7 +165,7 @@ class BranchBody(Body):
     @model_validator(mode="before")
     @classmethod
     def _begin_at_the_branch(cls, value: Any) -> Any:
-        """Let what happens begin at the branch by default."""
+        """Set the first step of each disturbance to that of the branch by default."""
         match value:
             case {"branch_from": {"step": step}, "disturbances": [*given]}:
                 begun = [{"at_step": step, **x} if isinstance(x, dict) else x for x in given]

@@ -270,7 +270,7 @@ class Job:
             self.end("failed", f"The job ended before it was done: {end.how}.")
 
     def _keep_checkpoint(self) -> None:
-        """Let the newest checkpoint be the table of a training that cannot save one any more.
+        """Store the newest checkpoint as the table of a training that cannot save one any more.
 
         Raises:
             StorageFailed: if the store cannot be used; to be retried.

@@ -60,7 +60,7 @@ class AddedTask(ABC):
     @property
     @abstractmethod
     def done(self) -> int:
-        """How much of it is done before the task begins."""
+        """Progress that was made before the task begins, as after a resume."""
 
     @abstractmethod
     def run(

@@ -144,7 +144,7 @@ class ProcessPool:
                     call.result()
                 if waiting:
                     check()
-                # Of one that has ended nothing is known any more.
+                # A process that has ended counts as 0: its time cannot be read any more.
                 taken_s = sum(max(processor_s(p) - before_s.get(p, 0.0), 0.0) for p in self.pids)
                 if waiting and taken_s > limit_s:
                     raise OutOfProcessorTime(f"it took over {limit_s:g} s of processor time")

@@ -66,7 +66,7 @@ class RunQueue:
     ) -> None:
         self._store, self._publish, self._owner_of = store, publish, owner_of
         self._turns: LRUCache[str, int] = LRUCache(_MAX_TURNS_KEPT)
-        """How many runs of each owner, and of each group, were started."""
+        """Number of runs of each owner, and of each group, that were started."""
         self._runs: dict[str, Run] = {}
         """By id, in order; each as it was stored last."""
         self._unreconciled: set[str] = set()

@@ -25,7 +25,7 @@ class Stopping:
         self._is_set = threading.Event()
 
     def set(self) -> None:
-        """Let every `check` fail from now on."""
+        """Mark the server as stopping: every `check` raises from now on."""
         self._is_set.set()
 
     def check(self) -> None:

@@ -136,7 +136,7 @@ def _unended_trainings(race: Run, store: RunStore) -> tuple[list[Run], tuple[str
         except NotFound as error:
             reason = f"training {training_id}, whose table it needs, was deleted"
             raise Conflict(f"race {race.id} cannot go on: {reason}", race.state) from error
-        # Of one that was stopped a race has the table, unless it was to wait for its end.
+        # A race has the table of a training that was stopped, unless it was to wait for its end.
         is_kept = training.state == "stopped" and training_id not in race.waiting_for
         if training.state in RESUMABLE and not is_kept:
             resumed += resumed_runs(training, store)

@@ -102,7 +102,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
             elif isinstance(record, Evaluated):
                 evaluated = record
         control.flush()
-        # What was changed during an evaluation may lead to another one.
+        # A change during an evaluation may lead to another evaluation.
         is_current = len(control.changes) == changes_before
         result = training_result(learner, config, evaluated=evaluated if is_current else None)
     control.flush()
@@ -110,7 +110,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
         control.checkpoint()
         return
     if result is None:
-        # What was learned is kept even if the evaluation takes longer than a stop may.
+        # The table is stored even if the evaluation takes longer than a stop may.
         control.checkpoint()
         # The baseline's walk takes a while; a training that is stopped early does not wait for it.
         result = training_result(learner, config, measure_reference=False)

@@ -12,7 +12,7 @@ from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import finish_s
 
 MAX_STRIDES = 2000
-"""So many steps of a lane are told one by one; of more, several together."""
+"""Most entries of a lane: of more steps, several are summed up in one entry."""
 
 
 def timeline(

@@ -16,7 +16,7 @@ class Conflict(HexapodError):
 
 
 class Forbidden(HexapodError):
-    """Who asks may not do this."""
+    """The client may not do this; HTTP 403."""
 
 
 class Damaged(Conflict):

@@ -49,7 +49,7 @@ class GrowingRace:
     def __init__(self, store: RunStore, run_id: str, lanes: list[LaneRecording]) -> None:
         self.lanes, self._store, self._run_id = lanes, store, run_id
         self._stored: list[tuple[int, str | None]] | None = None
-        """Of each lane the number of steps and the failure that are stored."""
+        """Number of steps and failure of each lane that are stored."""
 
     def add(self, record: LaneStep | LaneFailed) -> None:
         """Append a record."""

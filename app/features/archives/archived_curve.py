@@ -84,7 +84,7 @@ def _pieces(data: bytes) -> Iterator[bytes]:
     if len(data) <= _PIECE_BYTES:
         yield data
         return
-    # Where it has another form, a piece is no JSON, and is refused.
+    # If the curve has another form, a piece is not JSON, and is refused.
     start, end = data.index(b"[") + 1, len(data) - 1
     while end - start > _PIECE_BYTES:
         after = data.rindex(b"}", start, start + _PIECE_BYTES) + 1

@@ -138,7 +138,7 @@ def read_run_json(
             raise ValueError("it is too long")
         head = msgspec.json.decode(data, type=_Head)
         check_format(label, head.format, FORMAT)
-        # Of all that is in it only the curve may be long.
+        # The curve is the only member that may be long.
         curve_json = bytes(msgspec.json.decode(data, type=_OnlyCurve).curve)
         if len(data) - len(curve_json) > _MAX_RUN_BYTES:
             raise ValueError("it is too long")

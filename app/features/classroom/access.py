@@ -50,7 +50,7 @@ LESSONS = Access(name="lessons", spectators="watching", is_read=True)
 
 @dataclass(frozen=True, kw_only=True)
 class ParticipantAccess(Access):
-    """Who is in the room `code` of the path may do it.
+    """Access for participants of the room `code` of the path.
 
     Attributes:
         action: what the card that is shown must allow; to leave is always allowed.
@@ -196,7 +196,7 @@ class RoomAccess:
         return Participant(tuple(seats), self._rooms, self._shared) if seats else None
 
     def share(self, access: Access, room_of: RoomOf) -> None:
-        """Let the participants of a room do what is its own in another feature.
+        """Open routes of another feature to the participants of the room that they are about.
 
         Args:
             access: of the other feature's routes.

@@ -5,8 +5,8 @@ from collections.abc import Callable, Collection, Sequence
 ALPHABET = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 """Without O and 0, I and 1, which look alike on a projector."""
 CODE_LENGTH = 8
-"""So many that nobody guesses a code, however many are tried: a limit would be used up by one pupil
-for all of a class that shares an address."""
+"""Letters of a code: too many to guess it by trying, so that no rate limit is needed, which one
+pupil would use up for all of a class that shares an address."""
 CODE = f"[{ALPHABET}]{{{CODE_LENGTH}}}"
 """Regular expression of a code."""
 Choose = Callable[[Sequence[str]], str]

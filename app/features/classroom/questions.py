@@ -25,7 +25,7 @@ MAX_POINTS = 200
 """Points of a drawn curve."""
 _MOST = 1e9
 _METRES = {"m": 1.0, "cm": 0.01}
-"""Of the units in which a distance may be asked; without a unit it is in metres."""
+"""Metres in each unit in which a distance may be asked; without a unit it is in metres."""
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Kind = Literal["choice", "number", "point", "curve"]
 Curve = Sequence[tuple[float, float]]
@@ -70,7 +70,7 @@ class WalkOutcome(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Score(Record):
-    """How an answer compares with all seeds; null where that does not apply.
+    """Score of an answer against all seeds; null where that does not apply.
 
     Attributes:
         is_right: whether it is the answer that the lesson gives.
@@ -168,7 +168,7 @@ class Choice(QuestionType):
 
         def score(value: Any) -> Score:
             won = [1 / len(winners) if value in winners else 0.0 for winners in races]
-            # Where no race has an agent of this name, the choices are no agents.
+            # If no race has an agent of this name, the choices are not agents.
             return Score(
                 is_right=None if right is None else value == right,
                 share=ordered_sum(won) / len(won) if any(won) or (won and right is None) else None,

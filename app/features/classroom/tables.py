@@ -69,7 +69,7 @@ ROOM_RUNS = Table(
     Column("is_main", Boolean, nullable=False),
     # Whether others than the participant and operators may see it.
     Column("is_shown", Boolean, nullable=False),
-    # What a what-if gave; of a run none.
+    # Answer of a what-if; NULL for a run.
     Column("answer", JsonWithNan),
     Column("created_at", UtcTime, nullable=False),
     Index("ix_room_runs_room_card_seed", "room", "card", "seed"),

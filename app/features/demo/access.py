@@ -1,4 +1,4 @@
-"""What a visitor of a demo may do: the one place where that is decided.
+"""Access of visitors of a demo: which routes and runs a visitor may use.
 
 A visitor is a spectator of a server that is a demo, known by a cookie from the first start on. A
 visitor starts trainings and races, and stops, renames and deletes their own; else a visitor does

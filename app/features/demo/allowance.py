@@ -16,7 +16,7 @@ HOUR = timedelta(hours=1)
 
 @dataclass(frozen=True)
 class Allowance:
-    """What visitors may start; all limits of a demo are here.
+    """Limits on the steps, runs and computing time of visitors of a demo.
 
     Attributes:
         steps_per_hour: steps that a visitor may compute in any hour; of a race of all its lanes.

@@ -17,13 +17,13 @@ from hexapods.domain.errors import HexapodError
 EVERY_S = 5.0
 """Period of the clean-up [s]."""
 _ATTEMPTS, _PAUSE_S = 20, 0.5
-"""Of an operator who ends a visitor: how often, and after how long again [s]."""
+"""Attempts to end a visitor for an operator, and the pause between them [s]."""
 _OVERLONG = "Stopped after {seconds:g} s, for which a run of this demo may compute."
 _logger = logging.getLogger(__name__)
 
 
 class Cleaner(Protocol):
-    """What deletes its own things once they are old, such as a feature."""
+    """Deletes its own data once they are old, as a feature does."""
 
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> Iterable[str]:
         """Delete what has not been used since a time; see `Feature.delete_before`."""

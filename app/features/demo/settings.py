@@ -15,8 +15,7 @@ _STRICTER_DEFAULTS: Mapping[str, Any] = {
     "max_viewers": 200,
     "quota_mb": 4000,
 }
-"""What is stricter on a demo unless it is given: strangers are there, of whom a class may share an
-address."""
+"""Stricter defaults of settings on a demo, which strangers use; a class may share an address."""
 
 
 @dataclass(frozen=True, kw_only=True)

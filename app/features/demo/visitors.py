@@ -33,7 +33,7 @@ _MAX_CLOCK_LEAD = timedelta(days=1)
 
 
 class Use(NamedTuple):
-    """What a visitor has used of the allowance.
+    """Steps and runs that a visitor has used of the allowance.
 
     Attributes:
         steps: counted within the last hour.

@@ -54,7 +54,7 @@ class WalkedLane:
 
 
 class Tried(NamedTuple):
-    """How much of a learner's table it had tried, when it took its last step.
+    """Counts of the entries of a learner's table that it had tried before its last step.
 
     Attributes:
         tried, entries: values of its table, and those of moves or landings that were tried.

@@ -14,7 +14,7 @@ from hexapods.runs.transition_log import Logged
 SNAPSHOT_EVERY_S = 0.04
 """Work after which a snapshot is taken: that long it takes at most to step back."""
 MAX_SNAPSHOT_BYTES = 32_000_000
-"""Of all snapshots of a walk; past it every second one is dropped."""
+"""Limit on the memory of all snapshots of a walk; beyond it every second one is dropped."""
 WORK_S = 1.5
 """Work for one request [s]; one that needs more is told to ask again, and goes on from there."""
 Changes = Sequence[Mapping[str, Any]]

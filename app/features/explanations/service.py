@@ -48,7 +48,7 @@ from hexapods.runs.transition_log import Logged, TransitionLog
 MAX_PRACTICES = 4
 """Walks that are kept; the one asked for least recently is dropped."""
 MAX_ANSWER_BYTES = 16_000_000
-"""Of all answers that are kept."""
+"""Limit on the memory of all answers in the cache."""
 MAX_WAITING = 8
 MAX_TABLE_VALUES = 16_000_000
 """Largest table of a learner that is built again, about 200 MB."""
@@ -390,7 +390,7 @@ def _checked_step(step: int | None, taken: int, steps: int, run: Run, first: int
 
 
 def _in(run: Run, explain: Callable[[], T]) -> T:
-    """Tell why a learner cannot be built again as a conflict with the run that it is of."""
+    """Call a function; raise Conflict with the run if its learner cannot be rebuilt."""
     try:
         return explain()
     except (InvalidInput, NotRebuilt) as error:

@@ -132,7 +132,7 @@ def _add_anchors(tokens: list["Token"]) -> None:
 
 
 def _linked(tokens: list["Token"], name: str) -> list["Token"]:
-    """Let links lead to pages of the guide; leave out pictures, and links to what it has not.
+    """Rewrite links between documents to pages of the guide; drop pictures and links to files.
 
     Args:
         tokens: inline tokens of a page.

@@ -27,7 +27,7 @@ from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import preview
 
 MEMBERS = ("robot", "gait", "name")
-"""Of the JSON by which a body is stored."""
+"""Members of the JSON object by which a body is stored."""
 _UNNAMED = "Robot"
 _RETRY_S = 5
 _TOLD = (

@@ -1,4 +1,4 @@
-"""Who may use the routes of tournaments, and who asks."""
+"""Access to the routes of tournaments, and the reader of a request: participants or an operator."""
 
 from typing import Annotated
 
@@ -23,4 +23,4 @@ def _reader(request: Request) -> Reader:
 
 
 ReaderDep = Annotated[Reader, Depends(_reader)]
-"""Who asks."""
+"""The reader of the request."""

@@ -41,7 +41,7 @@ _logger = logging.getLogger(__name__)
 
 
 class JudgingTask(NamedTuple):
-    """What is judged.
+    """Arguments of the judging of one entry on one draw, sent to a process.
 
     Attributes:
         rules: of the tournament.
@@ -69,12 +69,12 @@ class _Draw(NamedTuple):
 
 
 class _GivenUp(Exception):
-    """What is judged is not waited for any more."""
+    """The judging of a draw was cancelled: its entry or tournament is gone or withdrawn."""
 
 
 @dataclass
 class _Work:
-    """What the threads of a judge do at present; all of it under the tournaments' lock.
+    """State shared by the threads of a judge, guarded by the tournaments' lock.
 
     Attributes:
         draws: that are being judged, as (tournament, entry, draw).

@@ -176,7 +176,7 @@ class TournamentRows:
         self._database.write(lambda connection: connection.execute(statement))
 
     def end(self, tournament: str, withdrawn: Sequence[int]) -> None:
-        """Let a tournament end, and withdraw entries by their numbers, in one transaction."""
+        """Mark a tournament as ending, and withdraw entries by number, in one transaction."""
         entries = TOURNAMENT_ENTRIES
         is_of = and_(entries.c.tournament == tournament, entries.c.number.in_(list(withdrawn)))
 

@@ -34,9 +34,9 @@ TOURNAMENT_ENTRIES = Table(
     METADATA,
     Column("tournament", PortableText, _of_tournament(), primary_key=True),
     Column("number", BigInteger, primary_key=True, autoincrement=False),
-    # Of the participant who entered it; NULL for references, and entries of operators.
+    # Seed of the participant who entered it; NULL for references, and entries of operators.
     Column("seed", BigInteger),
-    # Of a reference, or as an operator has given it.
+    # Name of a reference, or the name that an operator has entered.
     Column("name", PortableText, nullable=False),
     Column("is_reference", Boolean, nullable=False),
     Column("entry", JsonWithNan, nullable=False),

@@ -38,9 +38,9 @@ MAX_NUMBER = 1_000_000
 MAX_OPEN = 16
 """Tournaments that have not ended, at once."""
 MAX_TABLES_BYTES = 24 << 20
-"""Of all tables of a tournament, as its file has them, in base64."""
+"""Limit on the size of all tables of a tournament in its file, in base64."""
 MAX_ROBOTS_BYTES = 8 << 20
-"""Of the documents of all stored robots of the rules, which are in the file too."""
+"""Limit on the size of the documents of all stored robots of the rules, which the file contains."""
 _RETRY_S = 60
 _SECRET = re.compile("[0-9a-f]{64}")
 
@@ -406,7 +406,7 @@ def _minutes(seconds: int) -> str:
 
 @dataclass(frozen=True)
 class _Outcome(Record):
-    """What is kept of a tournament at its end; see `OUTCOME`."""
+    """Data that are stored of a tournament at its end; see `OUTCOME`."""
 
     standings: tuple[RankedEntry, ...]
     robots: Mapping[str, Mapping[str, Any]]

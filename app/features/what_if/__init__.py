@@ -1,4 +1,4 @@
-"""What the form's settings would give, and how long a run would take, before it is started.
+"""What-ifs: the distances that settings would give, and the time that a run would take, in advance.
 
 `what_if` runs 30 seeds with the chosen settings and 30 with the defaults on the kinematic
 simulator, within a limit of time, and caches results, in turns with operators first; `allowance`

@@ -28,9 +28,9 @@ from hexapods.domain.text import check_name
 from hexapods.files import is_disk_full, write_atomically
 
 UPLOAD_ENDING = ".upload"
-"""Of the files that robots were read from."""
+"""Ending of the files that robots were read from."""
 FOUND_ENDING = ".found"
-"""Of what was found in them, in JSON."""
+"""Ending of the descriptions of what was found in these files, in JSON."""
 _ENDINGS = (ENDING, UPLOAD_ENDING, FOUND_ENDING)
 # From the time [ms], so that versions increase across restarts of the server.
 _versions = itertools.count(time.time_ns() // 1_000_000)
@@ -69,7 +69,7 @@ class RobotStore:
             disk_space: to check before each write.
         """
         self._database, self._folder, self._disk_space = database, folder, disk_space
-        # Of changes: a robot must not be deleted between its document's writing and its row's.
+        # Lock of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
         self.users: dict[str, Sequence[Column[Any]]] = {"run": (RUNS.c.config, RUNS.c.result)}
         self._described: set[str] = set()
@@ -77,7 +77,7 @@ class RobotStore:
 
     @contextmanager
     def known(self) -> Iterator[None]:
-        """Let this process find the robots by their ids, and know their names."""
+        """Add the robots to this process's library within the context, with their names."""
         LIBRARY.add_folder(self._folder)
         try:
             self._describe(self.stored(hidden=True))
