@@ -1,13 +1,11 @@
 """Response models that several routes share; see `app.answer`."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
 from app.answer import Answer
 from app.events.run_view import DamagedRunView, RaceView, Settings, TrainingView
-from app.stage.state_machine import Origin, Phase
-from hexapods.runs.clocks import Clock
 
 
 class Page(Answer):
@@ -44,40 +42,6 @@ class DeletedView(Answer):
 
     deleted: list[str]
     kept: list[KeptRun]
-
-
-class Announcement(Answer):
-    """A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run."""
-
-    run_id: str
-    in_s: Annotated[float, Field(ge=0)]
-
-
-class StageView(Answer):
-    """State of the stage, which shows one run to all viewers.
-
-    Attributes:
-        phase: `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is
-            at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
-        origin: why the run is on stage: it was `started`, a person has `chosen` it, the server
-            replays it (`automatic`), or it was shown last before the server's start (`restored`).
-    """
-
-    run_id: str | None
-    kind: Literal["idle", "training", "race"]
-    phase: Phase
-    origin: Origin
-    time_s: float
-    playing: bool
-    speed: float | Literal["time-lapse"]
-    clock: Clock
-    end_at_time_out: bool
-    replay: bool
-    live: bool
-    ended: bool
-    next_run_id: str | None
-    holder: str | None
-    announced: Announcement | None
 
 
 class SeedsView(Answer):

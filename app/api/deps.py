@@ -16,6 +16,7 @@ from app.api.descriptions import VALID
 from app.api.identity import Identity
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
+from app.events.event_records import RobotsEvent
 from app.events.run_metrics import RunMetrics
 from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
@@ -99,7 +100,8 @@ class Services:
     def publish_robots(self) -> None:
         """Send an event to all pages, as stored robots have changed."""
         robots = self.store.robots
-        self.bus.publish("robots", {"count": len(robots.stored()), "version": robots.version})
+        event = RobotsEvent(count=len(robots.stored()), version=robots.version)
+        self.bus.publish("robots", event)
 
 
 class EventListener:

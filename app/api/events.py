@@ -17,13 +17,14 @@ from app.api.deps import (
     StageDep,
 )
 from app.api.descriptions import VALID
+from app.api.event_answers import snapshot_view
 from app.api.policy import WATCH_STAGE, api_router, policy
+from app.events.event_records import Evaluation
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
 from app.storage.errors import Busy
-from app.storage.json_text import json_text
 from app.viewer.shared_stage import SharedStage
-from hexapods.domain.records import to_json
+from hexapods.domain.records import to_json_bytes
 from hexapods.version import __version__
 
 NEWEST_RUNS = 50
@@ -150,18 +151,18 @@ def _snapshot(
         runs = store.list(limit=NEWEST_RUNS, condition=condition).items
     else:
         runs = [store.find(run_id)]
-    snapshot: dict[str, Any] = {
-        "version": __version__,
-        "role": role if identity is None else identity.page_role,
-        "viewers": shared.hub.counters.viewers,
-        "robots_version": store.robots.version,
-        "runs": [to_json(services.jobs.view(run)) for run in runs],
-        "stage": shared.stage.state(),
-        "scene": shared.stage.scene(),
-    }
-    if run_id is not None:
-        snapshot["evaluations"] = store.curves.get(run_id)
-    return json_text(snapshot), {run.id for run in runs}
+    rows = [] if run_id is None else store.curves.get(run_id)
+    snapshot = snapshot_view(services.features.classes)(
+        version=__version__,
+        role=role if identity is None else identity.page_role,
+        viewers=shared.hub.counters.viewers,
+        robots_version=store.robots.version,
+        runs=[services.jobs.view(run) for run in runs],
+        stage=shared.stage.state(),
+        scene=shared.stage.scene(),
+        evaluations=[Evaluation(**row) for row in rows],
+    )
+    return to_json_bytes(snapshot).decode(), {run.id for run in runs}
 
 
 def _event_id(header: str | None) -> int | None:

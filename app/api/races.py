@@ -4,7 +4,6 @@ import gzip
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
-import msgspec
 from fastapi import Query, Request
 from starlette.datastructures import QueryParams
 from starlette.responses import Response, StreamingResponse
@@ -16,15 +15,16 @@ from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.policy import WATCH_RUN, policy
-from app.api.recorded_answers import RecordingView, TimelineView
+from app.api.recorded_answers import RecordingView
 from app.api.runs import RunPath, find, run_routes
 from app.api.work import ANALYSIS, DOWNLOAD, ENCODING, Work
 from app.events.run_view import RaceView
 from app.stage.playback import original_of
-from app.stage.timeline import timeline
+from app.stage.timeline import TimelineView, timeline
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
 from app.storage.run import NOT_ENDED, Run
+from hexapods.domain.records import to_json_bytes
 from hexapods.exports import recording_json
 from hexapods.exports.recorded_stream import recorded_stream
 from hexapods.runs.clocks import Clock
@@ -88,8 +88,8 @@ def get_timeline(
     def compute() -> bytes:
         services.stopping.check()
         _, config, lanes = _find_recorded(services, run_id)
-        document = timeline(lanes, run.lane_training_ids, config.steps, clock)
-        return gzip.compress(msgspec.json.encode(document), compresslevel=1, mtime=0)
+        content = to_json_bytes(timeline(lanes, run.lane_training_ids, config.steps, clock))
+        return gzip.compress(content, compresslevel=1, mtime=0)
 
     # The timeline of a race that has ended is computed once, and cached for all clients.
     key = ("timeline", run.id, run.created_at, run.state, run.ended_at, clock)

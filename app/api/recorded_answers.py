@@ -1,19 +1,8 @@
-"""Response models of what runs recorded: curves, tables, walks, timelines and replays."""
-
-from typing import Literal
+"""Response models of what runs recorded: curves, tables and walks."""
 
 from app.answer import Answer, Count
+from app.events.event_records import Evaluation
 from hexapods.domain.gait import AnyGait
-from hexapods.runs.clocks import Clock
-from hexapods.shows.show import MarkKind
-
-
-class Evaluation(Answer):
-    """Evaluation of a training: the distance walked [m] after `step` steps of practice."""
-
-    step: Count
-    distance_m: float
-    epsilon: float
 
 
 class CurveView(Answer):
@@ -101,83 +90,3 @@ class RecordingView(Answer):
 
     steps: int
     lanes: list[RecordedLane]
-
-
-class TimelineLane(Answer):
-    """A lane's distance over time: points are [s, m], decision intervals are [from s, to s].
-
-    Of a lane of more than 2,000 steps, `stride` steps together are told as one: it decides on all
-    of them, then walks.
-
-    Attributes:
-        steps: that it has taken so far.
-        stride: number of steps told as one; 1 in all but long races.
-    """
-
-    agent: str
-    training_id: str | None
-    color: str
-    steps: Count
-    stride: int
-    points: list[tuple[float, float]]
-    thinking: list[tuple[float, float]]
-    futures: list[int]
-    crossed_s: float | None
-    total_s: float
-    failure: str | None
-
-
-class TimelineView(Answer):
-    """Timeline of a race under one clock."""
-
-    clock: Clock
-    steps: int
-    finish_line_m: float
-    first_finish_s: float | None
-    lanes: list[TimelineLane]
-
-
-class ReplayMark(Answer):
-    """Something that happened in a run, as a point on its timeline.
-
-    Attributes:
-        lane: from 0; null if it concerns all lanes.
-        step: that begins then, or in which a robot fell, from 0.
-        distance_m: that an evaluation reached.
-    """
-
-    kind: MarkKind
-    time_s: float
-    lane: int | None
-    step: int | None
-    distance_m: float | None
-
-
-class ReplayView(Answer):
-    """Plan by which a page plays a run by itself; times are the run's own [s].
-
-    Attributes:
-        ghost_id: of the run whose lanes are shown as ghosts.
-        clock: that times a race; null for a training.
-        complete: whether the run will record no more.
-        duration_s: null while it is not known.
-        recorded_s: intervals that can be shown; of a long practice the first and newest steps.
-        step_ends_s: for each lane, of its recorded steps.
-        frame_s: time between two frames of level 0.
-        segment_frames: number of frames in a segment.
-        lowest_level: each level has half as many frames as the one below.
-    """
-
-    run_id: str
-    ghost_id: str | None
-    kind: Literal["training", "race"]
-    clock: Clock | None
-    complete: bool
-    duration_s: float | None
-    recorded_s: list[tuple[float, float]]
-    step_ends_s: list[list[float]]
-    marks: list[ReplayMark]
-    frame_s: float
-    segment_frames: int
-    lowest_level: int
-    highest_level: int

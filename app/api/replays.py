@@ -3,7 +3,7 @@
 from typing import Annotated, NamedTuple
 
 from fastapi import Depends, Path, Query, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
@@ -11,11 +11,11 @@ from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
 from app.api.fields import RunId
 from app.api.policy import WATCH_RUN, api_router, policy
-from app.api.recorded_answers import ReplayView
+from app.api.record_response import RecordResponse
 from app.api.runs import RunPath
 from app.api.work import ANALYSIS
 from hexapods.runs.clocks import Clock
-from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
+from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL, ReplayView
 
 router = api_router(prefix="/runs/{run_id}/replay", tags=["replays"])
 
@@ -27,19 +27,17 @@ ClockQuery = Annotated[Clock, Query(description="times a race; a training has on
 GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 
 
-@router.get(
-    "", summary="Get a replay's plan: intervals, steps and marks", response_model=ReplayView
-)
+@router.get("", summary="Get a replay's plan: intervals, steps and marks")
 @policy(access=WATCH_RUN, work=ANALYSIS)
 def get_replay(
     services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper", ghost: GhostQuery = None
-) -> Response:
+) -> RecordResponse[ReplayView]:
     """Return the recorded intervals of the run's time, its steps, and marks for a timeline.
 
     The frames are at `segments/{level}/{number}`. With `ghost` the robots of another run of the
     same kind are shown too, as ghosts; say so in all requests of a replay.
     """
-    return JSONResponse(services.replays.plan(run_id, clock, ghost))
+    return RecordResponse(services.replays.plan(run_id, clock, ghost))
 
 
 @router.get(

@@ -5,21 +5,22 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter
 from pydantic import create_model
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.deps import StageDep
-from app.api.event_answers import stage_view
 from app.api.fields import known_members
 from app.api.policy import OPERATOR, WATCH_STAGE, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.schemas import StageBody
 from app.feature import Feature
+from app.stage.stage import stage_view
 
 
 def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
     """Return the routes of the stage, with what it keeps for features."""
     router = api_router(prefix="/stage", tags=["stage"])
-    view = stage_view(tuple(features))
     kinds = {name: kind for feature in features for name, kind in feature.stage_members.items()}
+    view = stage_view(tuple(kinds.items()))
     added: dict[str, Any] = {
         name: (Annotated[kind, known_members(kind)] | None, None) for name, kind in kinds.items()
     }
@@ -29,7 +30,7 @@ def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
     @policy(access=WATCH_STAGE)
     def get_stage(shared: StageDep) -> Response:
         """Return the state of the stage: run, time, speed and clock."""
-        return JSONResponse(shared.stage.state())
+        return RecordResponse(shared.stage.state())
 
     @router.put("", response_model=view, summary="Show a run, or change the stage's playback")
     @policy(access=OPERATOR)
@@ -39,6 +40,6 @@ def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
         members = {name: changes.pop(name) for name in kinds}
         changed_members = {name: member for name, member in members.items() if member is not None}
         shared.stage.set(**changes, members=changed_members)
-        return JSONResponse(shared.stage.state())
+        return RecordResponse(shared.stage.state())
 
     return router

@@ -15,9 +15,10 @@ from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.record_response import RecordResponse
-from app.api.recorded_answers import CurveView, Evaluation, QTableView
+from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, located, run_routes
 from app.api.work import ANALYSIS
+from app.events.event_records import Evaluation
 from app.events.run_view import TrainingView
 from app.jobs import table_import
 from app.storage.artifact_file import closing_after

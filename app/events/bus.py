@@ -9,14 +9,12 @@ import itertools
 import threading
 import time
 from collections import OrderedDict, deque
-from collections.abc import AsyncIterator, Callable, Container, Mapping
+from collections.abc import AsyncIterator, Callable, Container
 from typing import Any, NamedTuple
 
-from app.answer import Answer
 from app.events.run_view import view_of
-from app.storage.json_text import json_text
 from app.storage.run import AnyRun
-from hexapods.domain.records import to_json_bytes
+from hexapods.domain.records import Record, to_json_bytes
 
 RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
@@ -165,7 +163,7 @@ class EventBus:
     def publish(
         self,
         event: str,
-        data: Mapping[str, Any] | Answer,
+        data: Record,
         run_id: str | None = None,
         channel: "Channel | None" = None,
     ) -> None:
@@ -173,7 +171,7 @@ class EventBus:
 
         Args:
             event: its name.
-            data: plain types. A NaN or an infinity is sent as null, so that one run's number
+            data: of the event. A NaN or an infinity is sent as null, so that one run's number
                 does not break every stream.
             run_id: the run, or what else it is about, if any.
             channel: the channel to whose subscribers alone it goes; None for all.
@@ -183,12 +181,12 @@ class EventBus:
     def _send(
         self,
         event: str,
-        data: Mapping[str, Any] | Answer,
+        data: Record,
         run_id: str | None,
         run: AnyRun | None = None,
         channel: "Channel | None" = None,
     ) -> None:
-        text = to_json_bytes(data).decode() if isinstance(data, Answer) else json_text(data)
+        text = to_json_bytes(data).decode()
         with self._lock:
             is_state = event in self.state_events
             published = Event(next(self._ids), event, text, run_id, run, channel, is_state)
@@ -257,9 +255,7 @@ class Channel:
         self._bus = bus
         self.is_closed = False
 
-    def publish(
-        self, event: str, data: Mapping[str, Any] | Answer, run_id: str | None = None
-    ) -> None:
+    def publish(self, event: str, data: Record, run_id: str | None = None) -> None:
         """Send an event to the subscribers of this channel; see `EventBus.publish`."""
         self._bus.publish(event, data, run_id, channel=self)
 

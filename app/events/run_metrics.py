@@ -4,13 +4,12 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
-from app.answer import Answer
 from app.events.bus import Channel, EventBus
 from app.storage.run import AnyRun, Run
 from app.storage.run_kind import WALKS
+from hexapods.domain.records import Record
 
 _WINDOW_S = 10.0
 _logger = logging.getLogger(__name__)
@@ -55,7 +54,7 @@ class RunMetrics(EventBus):
     def publish(
         self,
         event: str,
-        data: Mapping[str, Any] | Answer,
+        data: Record,
         run_id: str | None = None,
         channel: Channel | None = None,
     ) -> None:

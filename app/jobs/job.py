@@ -11,7 +11,9 @@ from datetime import UTC, datetime, timedelta
 from operator import itemgetter
 from typing import Any
 
+from app.answer import Answer
 from app.events.bus import EventBus
+from app.events.event_records import EvaluationEvent, RatesEvent, ReferenceEvent
 from app.jobs.job_control import CHECKPOINT_EVERY_S
 from app.jobs.messages import (
     Batch,
@@ -325,9 +327,10 @@ class Job:
             self._recordings.begin_training(self.run_id, began.rest_qpos[0], began.after_step)
 
     def _handle_batch(self, batch: Batch) -> None:
-        evaluated = [r for r in batch.records if isinstance(r, Evaluated)]
-        rows = [
-            {"step": r.step, "distance_m": r.distance_m, "epsilon": r.epsilon} for r in evaluated
+        rows: list[dict[str, Any]] = [
+            {"step": record.step, "distance_m": record.distance_m, "epsilon": record.epsilon}
+            for record in batch.records
+            if isinstance(record, Evaluated)
         ]
         if rows:
             self._store.curves.append(self.run_id, rows)
@@ -340,13 +343,14 @@ class Job:
                 self._store.baselines.add(record.baseline, greedy_distance_m)
                 self._store.update(self.run_id, greedy_distance_m=greedy_distance_m)
                 self.publish(greedy_distance_m=greedy_distance_m)
-                self._publish_event(
-                    "reference",
+                reference = ReferenceEvent(
+                    run_id=self.run_id,
                     greedy_distance_m=greedy_distance_m,
                     best_known_m=record.best_known_m,
                 )
+                self._publish_event("reference", reference)
         for row in rows:
-            self._publish_event("evaluation", **row)
+            self._publish_event("evaluation", EvaluationEvent(run_id=self.run_id, **row))
         self._handle_progress(batch.done)
         if self.is_race:
             self._save_regularly()
@@ -383,7 +387,7 @@ class Job:
         self._store.update(self.run_id, changes=changes)
         self._progress.clear()
         if "disturbance" not in change:
-            self._publish_event("rates", **change)
+            self._publish_event("rates", RatesEvent(run_id=self.run_id, **change))
         self.publish(changes=changes)
         self._acknowledge(changed)
 
@@ -436,8 +440,8 @@ class Job:
             return None
         return round((self._run.total - done) * (now - began) / (done - first_done), 1)
 
-    def _publish_event(self, event: str, **data: Any) -> None:
-        self._bus.publish(event, {"run_id": self.run_id, **data}, self.run_id)
+    def _publish_event(self, event: str, data: Answer) -> None:
+        self._bus.publish(event, data, self.run_id)
 
 
 def _trained_robots(task: RaceTask) -> list[Any]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.events.bus import EventBus
+from app.events.event_records import DeletedRun
 from app.events.run_view import DamagedRunView, RunView, view_of
 from app.jobs.job import Job
 from app.jobs.messages import Changed
@@ -349,7 +350,7 @@ class Jobs:
             self._check_needed_by_none(self._store.find(run_id))
             self._store.delete(run_id)
         self._recordings.discard(run_id)
-        self._bus.publish("run-deleted", {"id": run_id}, run_id)
+        self._bus.publish("run-deleted", DeletedRun(id=run_id), run_id)
 
     def _check_needed_by_none(self, run: AnyRun) -> None:
         needing = self._queue.run_needing(run.id)

@@ -5,24 +5,29 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, timedelta
+from functools import cache
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
+from annotated_types import Ge
+
+from app.answer import Answer, extended
 from app.events.bus import Channel, Event, Subscription
 from app.stage.playback import show_of
-from app.stage.state_machine import Origin, StagedRun, StageState
+from app.stage.state_machine import Origin, Phase, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
 from app.storage.run_kind import WALKS
 from hexapods.domain.errors import HexapodError
-from hexapods.domain.records import Record, to_json
+from hexapods.domain.records import Record
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.shows.race_show import RaceShow
-from hexapods.shows.show import TIME_LAPSE, IdleShow, RunLabel, Show
+from hexapods.shows.scene_view import SceneView, scene_view
+from hexapods.shows.show import IdleShow, RunLabel, Show
 from hexapods.shows.stage_frame import StageFrame
 
 ANNOUNCE_AFTER_S, NEXT_AFTER_S = 10.0, 10.0
@@ -35,6 +40,46 @@ _logger = logging.getLogger(__name__)
 _NO_MEMBERS: Mapping[str, Record] = MappingProxyType({})
 _SAME_END = timedelta(seconds=15)
 """The runs that the end of a server interrupts end within less."""
+
+
+class Announcement(Answer):
+    """A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run."""
+
+    run_id: str
+    in_s: Annotated[float, Ge(0)]
+
+
+class StageView(Answer):
+    """State of the stage, which shows one run to all viewers.
+
+    Attributes:
+        phase: `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is
+            at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
+        origin: why the run is on stage: it was `started`, a person has `chosen` it, the server
+            replays it (`automatic`), or it was shown last before the server's start (`restored`).
+    """
+
+    run_id: str | None
+    kind: Literal["idle", "training", "race"]
+    phase: Phase
+    origin: Origin
+    time_s: float
+    playing: bool
+    speed: float | Literal["time-lapse"]
+    clock: Clock
+    end_at_time_out: bool
+    replay: bool
+    live: bool
+    ended: bool
+    next_run_id: str | None
+    holder: str | None
+    announced: Announcement | None
+
+
+@cache
+def stage_view(members: tuple[tuple[str, type[Record]], ...]) -> type[StageView]:
+    """Return the record of a stage's state, with members of these names and types."""
+    return extended(StageView, dict(members))
 
 
 class Stage:
@@ -75,6 +120,7 @@ class Stage:
         self._changes = channel.subscribe(run_ids=())
         """Events about the runs of the playlist."""
         self._members = dict(members)
+        self._view = stage_view(tuple((name, type(member)) for name, member in members.items()))
         self._playing = True
         self._speed: float | None = None
         """Speed chosen by a user; None for the show's automatic speed."""
@@ -194,29 +240,30 @@ class Stage:
             self._follow_picture()
             self._publish()
 
-    def state(self) -> dict[str, Any]:
-        """Return the state of playback in plain types, as `GET /stage` responds."""
+    def state(self) -> StageView:
+        """Return the state of playback, with the members that it keeps for others."""
         with self._lock:
             self._update_playlist()
             state, ids = self._state, [run.id for run in self._state.playlist]
-            return {
-                "run_id": self._run_id,
-                "kind": self._show.spec.kind,
-                "phase": state.phase,
-                "origin": state.origin,
-                "time_s": round(self._show.time_s, 3),
-                "playing": self._playing,
-                "speed": TIME_LAPSE if self._speed is None else self._speed,
-                "clock": self._clock,
-                "end_at_time_out": self._show.ends_at_time_out,
-                "replay": state.origin == "automatic",
-                "live": state.run is not None and state.run.is_computed,
-                "ended": self._show.ended,
-                "next_run_id": ids[1] if len(ids) > 1 else None,
-                "holder": ids[-1] if state.is_held else None,
-                "announced": self._announcement(),
-                **{name: to_json(member) for name, member in self._members.items()},
-            }
+            members: Mapping[str, Any] = self._members
+            return self._view(
+                run_id=self._run_id,
+                kind=self._show.spec.kind,
+                phase=state.phase,
+                origin=state.origin,
+                time_s=round(self._show.time_s, 3),
+                playing=self._playing,
+                speed="time-lapse" if self._speed is None else self._speed,
+                clock=self._clock,
+                end_at_time_out=self._show.ends_at_time_out,
+                replay=state.origin == "automatic",
+                live=state.run is not None and state.run.is_computed,
+                ended=self._show.ended,
+                next_run_id=ids[1] if len(ids) > 1 else None,
+                holder=ids[-1] if state.is_held else None,
+                announced=self._announcement(),
+                **members,
+            )
 
     def frame(self) -> StageFrame:
         """Advance playback to now, by the playback clock, and return its frame."""
@@ -233,10 +280,10 @@ class Stage:
             self._show_next(now)
             return self._show.frame(self._run_label())
 
-    def scene(self) -> dict[str, Any]:
-        """Return the current frame in plain types for the page, without advancing playback."""
+    def scene(self) -> SceneView:
+        """Return the current frame as pages are told of it, without advancing playback."""
         with self._lock:
-            return self._show.frame(self._run_label()).scene()
+            return scene_view(self._show.frame(self._run_label()))
 
     @property
     def _run_id(self) -> str | None:
@@ -249,11 +296,11 @@ class Stage:
         replay, name = self._state.origin == "automatic", self._runs[run.id].name
         return RunLabel(run.id, name, self._playing, replay, run.state)
 
-    def _announcement(self) -> dict[str, Any] | None:
+    def _announcement(self) -> Announcement | None:
         if self._state.announced is None or self._waiting_since_s is None:
             return None
         left_s = self._waiting_since_s + NEXT_AFTER_S - self._now()
-        return {"run_id": self._state.announced, "in_s": round(max(0.0, left_s), 1)}
+        return Announcement(run_id=self._state.announced, in_s=round(max(0.0, left_s), 1))
 
     def _is_recorded(self, run: Run) -> bool:
         try:

@@ -1,10 +1,10 @@
 """Timeline of a race under one clock: distance over time, and intervals of thinking, per lane."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from app.answer import Answer, Count
 from hexapods.agents.appearance import colors_of
 from hexapods.domain.types import FloatArray
 from hexapods.runs.clocks import FINISH_LINE_M, Clock, Timetable, crossing_s
@@ -15,13 +15,47 @@ MAX_STRIDES = 2000
 """Most entries of a lane: of more steps, several are summed up in one entry."""
 
 
+class TimelineLane(Answer):
+    """A lane's distance over time: points are [s, m], decision intervals are [from s, to s].
+
+    Of a lane of more than 2,000 steps, `stride` steps together are told as one: it decides on all
+    of them, then walks.
+
+    Attributes:
+        steps: that it has taken so far.
+        stride: number of steps told as one; 1 in all but long races.
+    """
+
+    agent: str
+    training_id: str | None
+    color: str
+    steps: Count
+    stride: int
+    points: list[tuple[float, float]]
+    thinking: list[tuple[float, float]]
+    futures: list[int]
+    crossed_s: float | None
+    total_s: float
+    failure: str | None
+
+
+class TimelineView(Answer):
+    """Timeline of a race under one clock."""
+
+    clock: Clock
+    steps: int
+    finish_line_m: float
+    first_finish_s: float | None
+    lanes: list[TimelineLane]
+
+
 def timeline(
     lanes: Sequence[LaneRecording],
     training_ids: Sequence[str | None],
     steps: int,
     clock: Clock,
-) -> dict[str, Any]:
-    """Return the race so far in plain types; times in s, distances in m.
+) -> TimelineView:
+    """Return the race so far; times in s, distances in m.
 
     Args:
         lanes: the recording.
@@ -32,19 +66,17 @@ def timeline(
     # The race may append to the recording meanwhile.
     snapshot = [lane.so_far() for lane in lanes]
     colors = colors_of([lane.agent for lane in snapshot])
-    return {
-        "clock": clock,
-        "steps": steps,
-        "finish_line_m": FINISH_LINE_M,
-        "first_finish_s": finish_s(snapshot, steps, clock),
-        "lanes": [
-            {"agent": lane.agent, "training_id": training, "color": color, **_lane(lane, clock)}
-            for lane, training, color in zip(snapshot, training_ids, colors, strict=True)
-        ],
-    }
+    lanes_with_names = zip(snapshot, training_ids, colors, strict=True)
+    return TimelineView(
+        clock=clock,
+        steps=steps,
+        finish_line_m=FINISH_LINE_M,
+        first_finish_s=finish_s(snapshot, steps, clock),
+        lanes=[_lane(lane, clock, training, color) for lane, training, color in lanes_with_names],
+    )
 
 
-def _lane(lane: LaneRecording, clock: Clock) -> dict[str, Any]:
+def _lane(lane: LaneRecording, clock: Clock, training_id: str | None, color: str) -> TimelineLane:
     timetable, figures = Timetable.of(lane.steps, clock), lane.steps.figures
     stride = max(1, -(-len(figures) // MAX_STRIDES))
     thought, ends = timetable.thought, timetable.ends
@@ -64,16 +96,19 @@ def _lane(lane: LaneRecording, clock: Clock) -> dict[str, Any]:
             points.append((decision_end_s, distance))
         step_start_s, distance = step_end_s, distance_then
         points.append((step_end_s, distance))
-    return {
-        "steps": len(figures),
-        "stride": stride,
-        "points": points,
-        "thinking": thinking,
-        "futures": futures.tolist(),
-        "crossed_s": crossing_s(lane, timetable),
-        "total_s": timetable.total_s,
-        "failure": lane.failure,
-    }
+    return TimelineLane(
+        agent=lane.agent,
+        training_id=training_id,
+        color=color,
+        steps=len(figures),
+        stride=stride,
+        points=points,
+        thinking=thinking,
+        futures=futures.tolist(),
+        crossed_s=crossing_s(lane, timetable),
+        total_s=timetable.total_s,
+        failure=lane.failure,
+    )
 
 
 def _together(thought: FloatArray, ends: FloatArray, stride: int) -> FloatArray:

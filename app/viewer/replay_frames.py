@@ -3,7 +3,6 @@
 import threading
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from app.cache import BytesCache
 from app.jobs.stopping import Stopping
@@ -14,7 +13,7 @@ from hexapods.domain.types import Cells
 from hexapods.drawing.replay_encoding import encode_frames, encode_posture, encode_scene
 from hexapods.exports.export_format import EncodedReplay
 from hexapods.runs.clocks import Clock
-from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment
+from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment, ReplayView
 
 _CACHE_BYTES = 32 << 20
 _SCENE = "scene"
@@ -36,8 +35,8 @@ class ReplayFrames:
         self._lock = threading.Lock()
         self._encodings = BytesCache(_CACHE_BYTES)
 
-    def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> dict[str, Any]:
-        """Return what a page needs to play a run, in plain types: see `ReplayView` of the API.
+    def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> ReplayView:
+        """Return what a page needs to play a run.
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Self
 
 from app.events.bus import Channel, EventBus
+from app.events.event_records import ViewersEvent
 from app.limits.client_slots import ClientSlots
 from app.stage.roles import Roles
 from app.stage.stage import Stage
@@ -69,7 +70,9 @@ class SharedStage:
         self.hub = Hub(
             follow_position=self._follow_position,
             slots=viewer_slots,
-            on_viewers_changed=lambda count: self.channel.publish("viewers", {"count": count}),
+            on_viewers_changed=lambda count: self.channel.publish(
+                "viewers", ViewersEvent(count=count)
+            ),
         )
         self._scene: StageScene | None = None
         self._resources = ExitStack()

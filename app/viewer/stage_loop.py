@@ -9,6 +9,7 @@ from app.events.bus import Channel
 from app.stage.stage import Stage
 from hexapods.drawing.scene import StageScene
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S
+from hexapods.shows.scene_view import SceneView, scene_view
 
 IDLE_FRAMES_PER_S = 10.0
 _STILL_FRAMES = 15
@@ -38,7 +39,7 @@ class StageLoop:
         self._has_viewers = has_viewers
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="stage", daemon=True)
-        self._published: dict[str, object] | None = None
+        self._published: SceneView | None = None
         self._published_s = -1.0
         self._published_run: tuple[str | None, bool] = None, False
         self._has_failed = False
@@ -68,7 +69,7 @@ class StageLoop:
             # Not each phase: a fast show changes that in each frame.
             run = frame.run_id, frame.ended
             if run != self._published_run or now - self._published_s >= 1 / SCENES_PER_S:
-                scene = frame.scene()
+                scene = scene_view(frame)
                 if scene != self._published:
                     self._channel.publish("scene", scene)
                 self._published, self._published_s, self._published_run = scene, now, run

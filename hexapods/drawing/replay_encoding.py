@@ -19,6 +19,7 @@ from typing import Any
 
 import msgspec
 
+from hexapods.domain.records import to_json
 from hexapods.domain.types import Cells
 from hexapods.drawing.posture import draw_posture
 from hexapods.drawing.scene import StageScene, grid_root
@@ -27,6 +28,7 @@ from hexapods.drawing.viser_internals.recorder import Recorded, recorder
 from hexapods.drawing.viser_internals.server import in_process_viser
 from hexapods.drawing.viser_internals.stream import LIFECYCLES, remap_buffers
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S, Replay
+from hexapods.shows.scene_view import scene_view
 from hexapods.shows.stage_frame import StageFrame
 
 _FRAMES_PER_SCENE = round(FRAMES_PER_S / SCENES_PER_S)
@@ -93,7 +95,7 @@ def _frames(replay: Replay, times_s: Sequence[float], check: Check) -> Iterator[
                 {
                     "time_s": frame.time_s,
                     "follow": _follow_points(frame, stage_scene),
-                    "scene": None if number % _FRAMES_PER_SCENE else frame.scene(),
+                    "scene": None if number % _FRAMES_PER_SCENE else to_json(scene_view(frame)),
                 },
             )
 

@@ -12,6 +12,7 @@ from hexapods.exports.options import ExportOptions
 from hexapods.exports.recorded_walks import RecordedWalks
 from hexapods.extras import install_command, is_installed
 from hexapods.runs.clocks import Clock
+from hexapods.shows.replay import ReplayView
 
 Load = Literal["stream", "encode", "render"]
 """Cost of an export for a server.
@@ -27,8 +28,7 @@ WriteFile = Callable[[Callable[[Path], None], str], bytes]
 class EncodedReplay(NamedTuple):
     """The encoded frames of a run; `hexapods.drawing.replay_encoding` has their form."""
 
-    plan: Mapping[str, Any]
-    """The replay's plan: see `hexapods.shows.replay.Replay.plan`."""
+    plan: ReplayView
     scene: Callable[[], bytes]
     segment: Callable[[int, int], bytes]
     """Returns a segment, by its level and number."""

@@ -9,14 +9,14 @@ nothing.
 import base64
 import json
 import re
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Iterator
 
 from hexapods import assets
 from hexapods.domain.errors import TooLong
+from hexapods.domain.records import to_json, to_json_bytes
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
 from hexapods.runs.recording import FIRST_STEPS, NEWEST_STEPS
-from hexapods.shows.replay import HIGHEST_LEVEL
+from hexapods.shows.replay import HIGHEST_LEVEL, ReplayView
 
 MAX_BYTES = 15_000_000
 """Maximum size of a page; a longer run has fewer frames in a second."""
@@ -34,7 +34,7 @@ _HEAD_END, _BODY_END = "</head>", "</body>"
 
 
 def replay_page(
-    plan: Mapping[str, Any],
+    plan: ReplayView,
     scene: Callable[[], bytes],
     segment: Segment,
     title: str,
@@ -54,9 +54,9 @@ def replay_page(
     """
     start = base64.b64encode(scene())
     before, after = _around_frames(title)
-    room = max_bytes - len(before) - len(after) - len(start) - len(json.dumps(plan)) - 2000
+    room = max_bytes - len(before) - len(after) - len(start) - len(to_json_bytes(plan)) - 2000
     level, numbers = _segments_that_fit(segment, plan, room)
-    replay = {**plan, "title": title, "level": level, "notes": _notes(plan, level)}
+    replay = {**to_json(plan), "title": title, "level": level, "notes": _notes(plan, level)}
 
     def chunks() -> Iterator[bytes]:
         yield before
@@ -75,9 +75,7 @@ def _block(name: str, data: bytes) -> bytes:
     return b'<script type="text/plain" id="%s">%s</script>\n' % (name.encode(), data)
 
 
-def _segments_that_fit(
-    segment: Segment, plan: Mapping[str, Any], room: int
-) -> tuple[int, list[int]]:
+def _segments_that_fit(segment: Segment, plan: ReplayView, room: int) -> tuple[int, list[int]]:
     """Return the lowest level from 0 on whose segments fit, and their numbers."""
 
     def size_of(level: int, number: int) -> int:
@@ -100,29 +98,29 @@ def _segments_that_fit(
         else:
             return level, numbers
     raise TooLong(
-        f"the {plan['kind']} is too long for a page of {MAX_BYTES // 1_000_000} MB; replay it on "
+        f"the {plan.kind} is too long for a page of {MAX_BYTES // 1_000_000} MB; replay it on "
         "the server"
     )
 
 
-def _recorded_segments(plan: Mapping[str, Any], level: int) -> list[int]:
+def _recorded_segments(plan: ReplayView, level: int) -> list[int]:
     """Return the numbers of the segments that have recorded frames, `MAX_SEGMENTS` + 1 at most."""
-    segment_s = plan["frame_s"] * plan["segment_frames"] * 2**level
+    segment_s = plan.frame_s * plan.segment_frames * 2**level
     numbers: list[int] = []
-    for from_s, to_s in plan["recorded_s"]:
+    for from_s, to_s in plan.recorded_s:
         first = max(int(from_s / segment_s), numbers[-1] + 1 if numbers else 0)
         last = int(to_s / segment_s)
         numbers += range(first, min(last, first + MAX_SEGMENTS - len(numbers)) + 1)
-    return [number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1]]
+    return [number for number in numbers if number * segment_s <= plan.recorded_s[-1][1]]
 
 
-def _notes(plan: Mapping[str, Any], level: int) -> list[str]:
+def _notes(plan: ReplayView, level: int) -> list[str]:
     """Return what the page leaves out, in sentences."""
     notes = []
     if level > 0:
-        rate = 1 / (plan["frame_s"] * 2**level)
+        rate = 1 / (plan.frame_s * 2**level)
         notes.append(f"{rate:.3g} pictures a second of the run's time, so that the file is small.")
-    if len(plan["recorded_s"]) > 1:
+    if len(plan.recorded_s) > 1:
         notes.append(
             f"Only the first {FIRST_STEPS} and the newest {NEWEST_STEPS} steps of this practice "
             "are recorded."

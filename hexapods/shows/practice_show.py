@@ -24,7 +24,7 @@ from hexapods.runs.recording import PracticeRecording, pose_at
 from hexapods.runs.records import ActionValues, StepTaken
 from hexapods.shows.race_lane import MARCHING_M, MARCHING_STEPS
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.show import Mark, RunLabel
+from hexapods.shows.show import ReplayMark, RunLabel
 from hexapods.shows.stage_frame import (
     AT_ORIGIN,
     ActionValuesView,
@@ -125,20 +125,20 @@ class PracticeShow:
         """The practice times at which the recorded steps end [s], as of one lane."""
         return [tuple(number * self._step_s for number in self._step_numbers)]
 
-    def marks(self) -> list[Mark]:
+    def marks(self) -> list[ReplayMark]:
         """Return what happened, in order of time."""
         last = self._step_numbers[-1] if self._step_numbers else 0
         marks = [
-            Mark("evaluation", ghost.step * self._step_s, 0, ghost.step, ghost.distance_m)
+            ReplayMark("evaluation", ghost.step * self._step_s, 0, ghost.step, ghost.distance_m)
             for ghost in self._evaluations
         ]
         marks += [
-            Mark("disturbance", step * self._step_s, 0, step)
+            ReplayMark("disturbance", step * self._step_s, 0, step, None)
             for step in self._world().change_steps
             if step <= last
         ]
         if (fell := self._fell_at_step) is not None:
-            marks.append(Mark("fall", (fell + 1) * self._step_s, 0, fell))
+            marks.append(ReplayMark("fall", (fell + 1) * self._step_s, 0, fell, None))
         return sorted(marks, key=lambda mark: mark.time_s)
 
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:

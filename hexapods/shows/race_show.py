@@ -12,7 +12,7 @@ from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import time_out_s
 from hexapods.shows.race_lane import RaceLane
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.show import Mark, RunLabel
+from hexapods.shows.show import ReplayMark, RunLabel
 from hexapods.shows.stage_frame import LaneFrame, Phase, SceneSpec, StageFrame
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
@@ -110,22 +110,24 @@ class RaceShow:
         """For each lane the race times at which its steps end [s]."""
         return [lane.timetable.ends for lane in self._lanes]
 
-    def marks(self) -> list[Mark]:
+    def marks(self) -> list[ReplayMark]:
         """Return what happened, in order of time, as far as all lanes are computed."""
-        marks = [] if self.first_finish_s is None else [Mark("time-out", self.first_finish_s)]
+        marks = []
+        if self.first_finish_s is not None:
+            marks.append(ReplayMark("time-out", self.first_finish_s, None, None, None))
         changes = self._world.change_steps
         for number, lane in enumerate(self._lanes):
             ends = lane.timetable.ends
             marks += [
-                Mark("disturbance", float(ends[step - 1]), number, step)
+                ReplayMark("disturbance", float(ends[step - 1]), number, step, None)
                 for step in changes
                 if step <= len(ends)
             ]
             if lane.crossing_s is not None:
-                marks.append(Mark("crossing", lane.crossing_s, number))
+                marks.append(ReplayMark("crossing", lane.crossing_s, number, None, None))
             if lane.fell_at_step is not None and lane.fell_at_step < len(ends):
                 fell = lane.fell_at_step
-                marks.append(Mark("fall", float(ends[fell]), number, fell))
+                marks.append(ReplayMark("fall", float(ends[fell]), number, fell, None))
         in_view = [mark for mark in marks if mark.time_s <= self._horizon_s]
         return sorted(in_view, key=lambda mark: mark.time_s)
 

@@ -8,15 +8,17 @@ pictures a second at its own speed.
 
 import math
 import threading
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from hexapods.domain.errors import HexapodError
+from hexapods.domain.records import Record
+from hexapods.runs.clocks import Clock
 from hexapods.shows.practice_show import PracticeShow
 from hexapods.shows.race_show import RaceShow
-from hexapods.shows.show import RunLabel
+from hexapods.shows.show import ReplayMark, RunLabel
 from hexapods.shows.stage_frame import StageFrame
 
 FRAMES_PER_S = 30.0
@@ -29,6 +31,37 @@ SCENES_PER_S = 5.0
 
 class NoSuchSegment(HexapodError):
     """A segment is past the end of what is recorded."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReplayView(Record):
+    """Plan by which a page plays a run by itself; times are the run's own [s].
+
+    Attributes:
+        ghost_id: of the run whose lanes are shown as ghosts.
+        clock: that times a race; null for a training.
+        complete: whether the run will record no more.
+        duration_s: null while it is not known.
+        recorded_s: intervals that can be shown; of a long practice the first and newest steps.
+        step_ends_s: for each lane, of its recorded steps.
+        frame_s: time between two frames of level 0.
+        segment_frames: number of frames in a segment.
+        lowest_level: each level has half as many frames as the one below.
+    """
+
+    run_id: str
+    ghost_id: str | None
+    kind: Literal["training", "race"]
+    clock: Clock | None
+    complete: bool
+    duration_s: float | None
+    recorded_s: list[tuple[float, float]]
+    step_ends_s: list[list[float]]
+    marks: list[ReplayMark]
+    frame_s: float
+    segment_frames: int
+    lowest_level: int
+    highest_level: int
 
 
 class Replay:
@@ -61,27 +94,27 @@ class Replay:
             self.show.advance(0.0, 1.0, run_ended=self.is_complete)
             return self.show.recorded
 
-    def plan(self) -> dict[str, Any]:
-        """Return the recorded intervals, the steps and the marks of the run, in plain types."""
+    def plan(self) -> ReplayView:
+        """Return the recorded intervals, the steps and the marks of the run."""
         with self._lock:
             show = self.show
-            return {
-                "run_id": self.label.run_id,
-                "ghost_id": self.ghost.label.run_id if self.ghost else None,
-                "kind": self.show.spec.kind,
-                "clock": show.clock if isinstance(show, RaceShow) else None,
-                "complete": self.is_complete,
-                "duration_s": show.duration_s,
-                "recorded_s": [list(interval) for interval in show.recorded],
-                "step_ends_s": [
+            return ReplayView(
+                run_id=self.label.run_id or "",
+                ghost_id=self.ghost.label.run_id if self.ghost else None,
+                kind="race" if isinstance(show, RaceShow) else "training",
+                clock=show.clock if isinstance(show, RaceShow) else None,
+                complete=self.is_complete,
+                duration_s=show.duration_s,
+                recorded_s=list(show.recorded),
+                step_ends_s=[
                     [round(t, 5) for t in np.asarray(ends).tolist()] for ends in show.step_ends_s
                 ],
-                "marks": [mark._asdict() for mark in show.marks()],
-                "frame_s": 1 / FRAMES_PER_S,
-                "segment_frames": SEGMENT_FRAMES,
-                "lowest_level": LOWEST_LEVEL,
-                "highest_level": HIGHEST_LEVEL,
-            }
+                marks=show.marks(),
+                frame_s=1 / FRAMES_PER_S,
+                segment_frames=SEGMENT_FRAMES,
+                lowest_level=LOWEST_LEVEL,
+                highest_level=HIGHEST_LEVEL,
+            )
 
     def segment_times_s(self, level: int, number: int) -> list[float]:
         """Return the times of a segment's frames that are recorded; the end of the run is the last.

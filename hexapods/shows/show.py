@@ -1,8 +1,9 @@
 """Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal, Protocol
 
+from hexapods.domain.records import Record
 from hexapods.runs.clocks import Clock
 from hexapods.shows.scene_spec import idle_scene, rest_pose
 from hexapods.shows.stage_frame import LaneFrame, SceneSpec, StageFrame
@@ -31,23 +32,21 @@ class RunLabel:
 MarkKind = Literal["time-out", "crossing", "fall", "disturbance", "evaluation"]
 
 
-class Mark(NamedTuple):
+@dataclass(frozen=True)
+class ReplayMark(Record):
     """Something that happened in a run, as a point on its timeline.
 
     Attributes:
-        kind: what it is.
-        time_s: when it happened, in the run's own time [s].
-        lane: in which lane, from 0; None if it concerns all.
-        step: the step that begins with it, or the one in which a robot fell, counted from 0; None
-            if it belongs to no step.
-        distance_m: what an evaluation reached.
+        lane: from 0; null if it concerns all lanes.
+        step: that begins then, or in which a robot fell, from 0.
+        distance_m: that an evaluation reached.
     """
 
     kind: MarkKind
     time_s: float
-    lane: int | None = None
-    step: int | None = None
-    distance_m: float | None = None
+    lane: int | None
+    step: int | None
+    distance_m: float | None
 
 
 class Show(Protocol):

@@ -13,6 +13,7 @@ from hexapods.domain.grid import FootGrid
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.clocks import Clock
 
 Kind = Literal["idle", "training", "race"]
 Phase = Literal[
@@ -150,89 +151,8 @@ class StageFrame:
     """Whether playback has ended: at the end of the run, or of a race at its time-out."""
     shown_speed: float = 1.0
     playing: bool = True
-    clock: str = "paper"
+    clock: Clock = "paper"
     replay: bool = False
-
-    def scene(self) -> dict[str, Any]:
-        """Return the frame in plain types for the page, without poses."""
-        return {
-            "run_id": self.run_id,
-            "kind": self.spec.kind,
-            "phase": self.phase,
-            "time_s": round(self.time_s, 3),
-            "duration_s": None if self.duration_s is None else round(self.duration_s, 3),
-            "computed_s": round(self.computed_s, 3),
-            "time_out_s": None if self.time_out_s is None else round(self.time_out_s, 3),
-            "ended": self.ended,
-            "shown_speed": round(self.shown_speed, 2),
-            "playing": self.playing,
-            "clock": self.clock,
-            "replay": self.replay,
-            "label": self.label,
-            "lanes": [self._lane(number) for number in range(len(self.lanes))],
-            "ghosts": [
-                {"step": ghost.step, "distance_m": round(ghost.distance_m, 4)}
-                for ghost in self.ghosts
-            ],
-            "ghost_lanes": self._ghost_lanes(),
-            "action_values": self._action_values(),
-        }
-
-    def _lane(self, number: int) -> dict[str, Any]:
-        lane, lane_spec = self.lanes[number], self.spec.lane_specs[number]
-        plain = ("step", "steps", "steps_made", "thinking", "futures", "futures_total")
-        flags = ("done", "halted", "crossed", "rank", "marching", "failure")
-        return {
-            "lane": number,
-            "agent": lane_spec.agent,
-            "name": lane_spec.name,
-            "color": lane_spec.color,
-            "distance_m": round(lane.distance_m, 4),
-            **{name: getattr(lane, name) for name in (*plain, *flags)},
-        }
-
-    def _ghost_lanes(self) -> list[dict[str, Any]]:
-        """Return where the ghosts of another run are; none before they part from this one."""
-        lane_specs = (self.spec.ghosts or self.spec).lane_specs
-        return [
-            {
-                "lane": number,
-                "name": lane_specs[number].name,
-                "distance_m": round(ghost.distance_m, 4),
-                "step": ghost.step,
-            }
-            for number, ghost in enumerate(self.ghost_lanes)
-            if ghost is not None
-        ]
-
-    def _action_values(self) -> dict[str, Any] | None:
-        """Return the action values of the first lane that has any."""
-        learners = (
-            (n, lane.action_values) for n, lane in enumerate(self.lanes) if lane.action_values
-        )
-        lane, values = next(learners, (0, None))
-        if values is None:
-            return None
-        spec, upcoming = self.spec, values.next
-        return {
-            "lane": lane,
-            "agent": spec.lane_specs[lane].agent,
-            "pairs": [list(group) for group in spec.gait.groups],
-            "cells_m": spec.grid.cells.round(5).tolist(),
-            "cell_names": [spec.grid.name(cell) for cell in range(len(spec.grid))],
-            "current": list(values.current),
-            "values_m": _table(values.values_m),
-            "visits": _table(values.visits),
-            "next": upcoming and {"pair": upcoming.group, "cell": upcoming.cell},
-            "low": round(values.low_m, 5),
-            "high": round(values.high_m, 5),
-        }
-
-
-def _table(values: FloatArray) -> list[list[float | None]]:
-    """Return rows of rounded numbers, with None for NaN, which JSON lacks."""
-    rows: list[list[float]] = values.tolist()
-    return [[None if math.isnan(v) else round(v, 5) for v in row] for row in rows]
 
 
 def rotated(pose: FloatArray, about: FloatArray, turn_rad: float) -> FloatArray:

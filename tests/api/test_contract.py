@@ -16,17 +16,19 @@ from pydantic import TypeAdapter
 from app.api.answers import TrainingPage
 from app.api.contract import operations, problems_of
 from app.api.deps import EventListener, Services
-from app.api.event_answers import event_bodies, stage_view
+from app.api.event_answers import event_bodies
 from app.api.events import get_events
 from app.api.options import options_view
 from app.api.policy import OPERATOR, PUBLIC, WATCH_RUN, MissingPolicy, RoutePolicy, policies, policy
 from app.api.problems import STATUSES
-from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
+from app.api.recorded_answers import CurveView, QTableView, RecordingView
 from app.api.run_views import RunPage
 from app.events.run_view import RaceView, TrainingView
 from app.installed_features import load
 from app.server import create_app
 from app.settings import Settings
+from app.stage.stage import stage_view
+from app.stage.timeline import TimelineView
 from hexapods.domain.errors import HexapodError
 from tests.api.calls import WALK, Api
 from tests.features.needing import needs

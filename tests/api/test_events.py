@@ -11,6 +11,7 @@ import pytest
 
 from app.api import events
 from app.api.deps import EventListener, Services
+from app.events.event_records import DeletedRun, EvaluationEvent
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -18,6 +19,10 @@ from app.storage.json_text import json_text
 from app.storage.run import LIVE, QUEUED
 from tests.storage.stores import training
 from tests.timeouts import LONG_S
+
+
+def evaluation(step: int) -> EvaluationEvent:
+    return EvaluationEvent(run_id="a", step=step, distance_m=0.1, epsilon=0.5)
 
 
 class ReceivedEvent(NamedTuple):
@@ -98,7 +103,7 @@ def test_change_during_the_read_of_the_snapshot_is_neither_lost_nor_undone(
             # The event loop is not blocked meanwhile.
             assert await asyncio.to_thread(blocked.reached.wait, LONG_S)
             change(services, "running")
-            services.bus.publish("evaluation", {"run_id": "a", "step": 1}, "a")
+            services.bus.publish("evaluation", evaluation(1), "a")
             change(services, "finished")
             blocked.go_on.set()
             snapshot = await first
@@ -142,7 +147,7 @@ def test_client_that_reconnects_after_the_snapshot_misses_no_event(services: Ser
     """The snapshot's id precedes the ids of the events that follow it."""
     first = services.bus.last_id
     for step in range(1, 4):
-        services.bus.publish("evaluation", {"run_id": "a", "step": step}, "a")
+        services.bus.publish("evaluation", evaluation(step), "a")
 
     async def test() -> None:
         last_id = first
@@ -160,8 +165,8 @@ def test_replayed_deletion_does_not_remove_a_run_that_was_imported_again(
     services: Services,
 ) -> None:
     first = services.bus.last_id
-    services.bus.publish("run-deleted", {"id": "a"}, "a")
-    services.bus.publish("run-deleted", {"id": "b"}, "b")
+    services.bus.publish("run-deleted", DeletedRun(id="a"), "a")
+    services.bus.publish("run-deleted", DeletedRun(id="b"), "b")
     services.store.create(training("a", state="finished"))
 
     async def test() -> None:
@@ -169,7 +174,7 @@ def test_replayed_deletion_does_not_remove_a_run_that_was_imported_again(
             assert (await stream.next()).data["runs"][0]["id"] == "a"
             assert (await stream.next_of("run-deleted")).data["id"] == "b"
             services.store.delete("a")
-            services.bus.publish("run-deleted", {"id": "a"}, "a")
+            services.bus.publish("run-deleted", DeletedRun(id="a"), "a")
             assert (await stream.next_of("run-deleted")).data["id"] == "a"
 
     asyncio.run(test())

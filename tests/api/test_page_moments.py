@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.api.event_answers import SceneLane, SceneView
 from app.events.run_view import RaceView, TrainingView
+from hexapods.shows.scene_view import SceneLane, SceneView
 from tests.page.moments import FILE
 
 

@@ -6,7 +6,21 @@ import threading
 from collections.abc import Callable, Coroutine
 from typing import Any
 
+from app.answer import Answer
 from app.events.bus import MAX_PENDING, RING_EVENTS, Event, EventBus, Subscription
+
+
+class Number(Answer):
+    """An event's number."""
+
+    n: int
+
+
+class Distances(Answer):
+    """Distances that may be no numbers."""
+
+    distance_m: float
+    lanes: list[float]
 
 
 async def receive(subscription: Subscription, count: int) -> list[Event]:
@@ -29,7 +43,7 @@ def test_events_published_from_many_threads_arrive_in_order() -> None:
 
         def publish() -> None:
             for n in range(100):
-                bus.publish("e", {"n": n})
+                bus.publish("e", Number(n=n))
 
         threads = [threading.Thread(target=publish) for _ in range(4)]
         for thread in threads:
@@ -44,10 +58,10 @@ def test_events_published_from_many_threads_arrive_in_order() -> None:
 
 def test_event_ids_increase_across_restarts() -> None:
     before = EventBus()
-    before.publish("e", {})
+    before.publish("e", Number(n=0))
     first = before.last_id
     after = EventBus()
-    after.publish("e", {})
+    after.publish("e", Number(n=0))
     assert after.last_id >= first
 
 
@@ -56,9 +70,9 @@ def test_state_events_of_a_slow_subscriber_are_coalesced() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
         for n in range(5):
-            bus.publish("run", {"n": n}, "a")
-            bus.publish("run", {"n": n}, "b")
-            bus.publish("evaluation", {"n": n}, "a")
+            bus.publish("run", Number(n=n), "a")
+            bus.publish("run", Number(n=n), "b")
+            bus.publish("evaluation", Number(n=n), "a")
         events = await receive(subscription, 7)
         runs = [(e.run_id, json.loads(e.data)["n"]) for e in events if e.event == "run"]
         assert runs == [("a", 4), ("b", 4)]
@@ -71,9 +85,9 @@ def test_subscription_to_one_run_receives_only_its_events() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe({"a"})
-        bus.publish("run", {"n": 1}, "b")
-        bus.publish("stage", {"n": 2})
-        bus.publish("run", {"n": 3}, "a")
+        bus.publish("run", Number(n=1), "b")
+        bus.publish("stage", Number(n=2))
+        bus.publish("run", Number(n=3), "a")
         assert [json.loads(e.data)["n"] for e in await receive(subscription, 1)] == [3]
 
     in_loop(run)()
@@ -82,15 +96,15 @@ def test_subscription_to_one_run_receives_only_its_events() -> None:
 def test_reconnection_replays_all_but_state_events() -> None:
     async def run() -> None:
         bus = EventBus()
-        bus.publish("evaluation", {"n": 0}, "a")
+        bus.publish("evaluation", Number(n=0), "a")
         seen = bus.last_id
-        bus.publish("run", {"n": 1}, "a")
-        bus.publish("evaluation", {"n": 2}, "a")
-        bus.publish("run-deleted", {"n": 3}, "b")
+        bus.publish("run", Number(n=1), "a")
+        bus.publish("evaluation", Number(n=2), "a")
+        bus.publish("run-deleted", Number(n=3), "b")
         events = await receive(bus.subscribe(last_event_id=seen), 2)
         assert [json.loads(e.data)["n"] for e in events] == [2, 3]
         future = bus.subscribe(last_event_id=bus.last_id + 1)
-        bus.publish("e", {"n": 4})
+        bus.publish("e", Number(n=4))
         assert [json.loads(e.data)["n"] for e in await receive(future, 1)] == [4]
 
     in_loop(run)()
@@ -100,9 +114,9 @@ def test_replay_buffer_is_bounded() -> None:
     async def run() -> None:
         bus = EventBus()
         for n in range(RING_EVENTS + 10):
-            bus.publish("e", {"n": n})
+            bus.publish("e", Number(n=n))
         late = bus.subscribe(last_event_id=0)
-        bus.publish("e", {"n": -1})
+        bus.publish("e", Number(n=-1))
         first = (await receive(late, 1))[0]
         assert json.loads(first.data)["n"] >= 10
 
@@ -114,7 +128,7 @@ def test_subscription_with_too_many_pending_events_is_closed() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
         for n in range(MAX_PENDING + 1):
-            bus.publish("e", {"n": n})
+            bus.publish("e", Number(n=n))
         events = [event async for event in subscription]
         assert len(events) <= MAX_PENDING + 1
 
@@ -125,7 +139,7 @@ def test_closing_the_bus_ends_every_subscription() -> None:
     async def run() -> None:
         bus = EventBus()
         subscription = bus.subscribe()
-        bus.publish("e", {})
+        bus.publish("e", Number(n=0))
         threading.Timer(0.05, bus.close).start()
         assert len([event async for event in subscription]) == 1
         assert [event async for event in bus.subscribe()] == []
@@ -138,32 +152,32 @@ def test_subscription_of_a_closed_loop_is_removed() -> None:
 
     async def listen() -> None:
         events = aiter(bus.subscribe())
-        bus.publish("e", {})
+        bus.publish("e", Number(n=0))
         await anext(events)
 
     asyncio.run(listen())
-    bus.publish("e", {})
-    bus.publish("e", {})
+    bus.publish("e", Number(n=0))
+    bus.publish("e", Number(n=0))
 
 
 def test_nan_and_infinity_are_sent_as_null() -> None:
     async def listen() -> list[str]:
         bus = EventBus()
         subscription = bus.subscribe()
-        bus.publish("e", {"distance_m": float("nan"), "lanes": [float("inf"), 1.5]})
+        bus.publish("e", Distances(distance_m=float("nan"), lanes=[float("inf"), 1.5]))
         bus.close()
         return [event.data async for event in subscription]
 
-    assert asyncio.run(listen()) == ['{"distance_m": null, "lanes": [null, 1.5]}']
+    assert asyncio.run(listen()) == ['{"distance_m":null,"lanes":[null,1.5]}']
 
 
 def test_events_can_be_drained_without_a_loop() -> None:
     bus = EventBus()
     subscription = bus.subscribe(names={"run", "run-deleted"})
-    bus.publish("run", {"n": 1}, "a")
-    bus.publish("evaluation", {"n": 2}, "a")
-    bus.publish("run", {"n": 3}, "a")
-    bus.publish("run-deleted", {"n": 4}, "b")
+    bus.publish("run", Number(n=1), "a")
+    bus.publish("evaluation", Number(n=2), "a")
+    bus.publish("run", Number(n=3), "a")
+    bus.publish("run-deleted", Number(n=4), "b")
     assert [json.loads(event.data)["n"] for event in subscription.drain()] == [3, 4]
     assert subscription.drain() == []
 
@@ -173,7 +187,7 @@ def test_full_subscription_grows_no_more_and_continues_after_its_last_event() ->
     stalled = bus.subscribe()
     count = MAX_PENDING + 1000
     for n in range(count):
-        bus.publish("evaluation", {"n": n})
+        bus.publish("evaluation", Number(n=n))
     received = stalled.drain()
     assert len(received) == MAX_PENDING
     received += bus.subscribe(last_event_id=received[-1].id).drain()
@@ -184,7 +198,7 @@ def test_long_replay_is_continued_where_it_was_cut() -> None:
     bus = EventBus()
     first = bus.last_id
     for n in range(RING_EVENTS):
-        bus.publish("evaluation", {"n": n})
+        bus.publish("evaluation", Number(n=n))
     received: list[Event] = []
     while len(received) < RING_EVENTS:
         since = received[-1].id if received else first

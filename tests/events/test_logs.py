@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from app.events import logs
+from app.events.event_records import DeletedRun
 from app.events.logs import LineFormatter
 from app.events.run_metrics import RunMetrics
 from tests.storage.stores import training
@@ -76,7 +77,7 @@ def test_steps_are_counted_and_state_changes_logged(written: io.StringIO) -> Non
     assert (bus.steps, bus.steps_per_s) == (120, 12.0)
     clock[0] = 12.0
     assert (bus.steps, bus.steps_per_s) == (120, 2.0)
-    bus.publish("run-deleted", {"id": "abc"}, "abc")
+    bus.publish("run-deleted", DeletedRun(id="abc"), "abc")
     logged = [json.loads(line) for line in written.getvalue().splitlines()]
     assert [entry["message"] for entry in logged] == [
         "training is queued",

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -101,9 +102,9 @@ def test_a_long_practice_has_the_segments_of_its_recorded_steps(parts: StagePart
 def test_a_run_of_years_is_not_enumerated(parts: StageParts) -> None:
     """Of an imported run, whose decisions may have taken any time: its segments fill memory."""
     plan = frames_of(parts).plan(parts.finished_race(LANES).id, "paper")
-    years = {**plan, "recorded_s": [[0.0, 1.0], [5.0, 1e11]]}
+    years = replace(plan, recorded_s=[(0.0, 1.0), (5.0, 1e11)])
     assert len(_recorded_segments(years, 0)) == MAX_SEGMENTS + 1
-    hour = {**plan, "recorded_s": [[0.0, 3600.0]]}
+    hour = replace(plan, recorded_s=[(0.0, 3600.0)])
     assert len(_recorded_segments(hour, 0)) > MAX_SEGMENTS
     assert _recorded_segments(hour, 1) == list(range(844))
 

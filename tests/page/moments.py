@@ -20,6 +20,7 @@ from app.stage.timeline import timeline
 from app.storage.run import Run, State
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.disturbances import Limp, Lost
+from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.world import World
 from hexapods.runs.clocks import CLOCKS, Clock
@@ -77,9 +78,7 @@ class Races:
         )
         parts.publish(run)
         for clock in clocks:
-            race_timeline = json.loads(
-                json.dumps(timeline(lanes, (None,) * len(lanes), STEPS, clock))
-            )
+            race_timeline = to_json(timeline(lanes, (None,) * len(lanes), STEPS, clock))
             self._show(run, clock, race_timeline)
         return run
 
@@ -124,7 +123,7 @@ class Races:
         for time_s, ends_at_time_out in self._times(race_timeline):
             stage.set(end_at_time_out=ends_at_time_out, time_s=time_s)
             self._parts.next_frame()
-            moments.append({"stage": stage.state(), "scene": stage.scene()})
+            moments.append({"stage": to_json(stage.state()), "scene": to_json(stage.scene())})
         view = json.loads(json.dumps(run_view(run), default=str))
         self.entries.append(
             {"run": view, "timeline": race_timeline, "tests": list(tests), "moments": moments}

@@ -11,6 +11,7 @@ import json
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import pytest
 
@@ -18,9 +19,11 @@ from app.events.bus import Channel, EventBus
 from app.stage.stage import ANNOUNCE_AFTER_S, NEXT_AFTER_S, Stage
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, RESUMABLE, STATES, State
+from hexapods.domain.records import to_json
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
+from hexapods.shows.scene_view import scene_view
 from tests.promises.length import at_length
 from tests.stage.stage_parts import GAIT, StageParts
 from tests.storage.stores import temporary_store
@@ -195,7 +198,7 @@ class Audience:
             parts.store, parts.recordings, Channel(parts.bus), now=lambda: parts.now
         )
         parts.stage.restore()
-        self._newest = parts.stage.state()
+        self._newest: dict[str, Any] = to_json(parts.stage.state())
 
     def _any(self, *states: State) -> str | None:
         states_by_run = self._expected.states.items()
@@ -226,13 +229,13 @@ class Audience:
         """Draw frames; the run changes by itself only if that was announced."""
         parts, expected = self._parts, self._expected
         for _ in range(round(seconds / FRAME_S)):
-            announced = parts.stage.state()["announced"]
+            announced = parts.stage.state().announced
             parts.now += FRAME_S
             frame = parts.stage.frame()
             if announced is not None:
                 assert not expected.is_chosen
                 assert expected.state in ("finished", None)
-            if frame.replay and announced is not None and frame.run_id == announced["run_id"]:
+            if frame.replay and announced is not None and frame.run_id == announced.run_id:
                 expected.put(frame.run_id, is_chosen=False)
             assert frame.run_id == expected.on_stage
 
@@ -242,27 +245,28 @@ class Audience:
         stage, frame = self._parts.stage.state(), self._parts.stage.frame()
         events = self._stage_events.drain()
         self._newest = json.loads(events[-1].data) if events else self._newest
-        for name in stage.keys() - {"time_s", "announced"}:
-            assert stage[name] == self._newest[name], "what pages were told last"
-        assert stage["run_id"] == frame.run_id == expected.on_stage
-        assert stage["live"] == (expected.state in NOT_ENDED)
-        assert (stage["origin"] == "chosen") == expected.is_chosen
-        assert stage["ended"] == frame.ended
+        for name, value in to_json(stage).items():
+            is_published = name not in ("time_s", "announced")
+            assert not is_published or value == self._newest[name], "what pages were told last"
+        assert stage.run_id == frame.run_id == expected.on_stage
+        assert stage.live == (expected.state in NOT_ENDED)
+        assert (stage.origin == "chosen") == expected.is_chosen
+        assert stage.ended == frame.ended
         if expected.on_stage is None:
-            assert (stage["phase"], frame.label) == ("empty", "On the start line")
+            assert (stage.phase, frame.label) == ("empty", "On the start line")
             return
         done, is_live = expected.steps[expected.on_stage], expected.state in NOT_ENDED
         moves, at_end = ("live", "decided") if is_live else ("showing", "ended")
-        assert stage["phase"] == (at_end if stage["ended"] else moves)
-        lanes = frame.scene()["lanes"]
-        assert all(lane["step"] <= min(done + is_live, STEPS) for lane in lanes)
+        assert stage.phase == (at_end if stage.ended else moves)
+        lanes = scene_view(frame).lanes
+        assert all(lane.step <= min(done + is_live, STEPS) for lane in lanes)
         # Lanes compute one after the other, so a time-out is known once both have all their steps.
         assert (frame.time_out_s is None) == (done < STEPS)
-        assert not any(lane["done"] for lane in lanes) or done == STEPS
-        is_over = stage["ended"] and expected.state in EARLY_ENDS
-        assert any(lane["halted"] for lane in lanes) <= (expected.state in EARLY_ENDS)
+        assert not any(lane.done for lane in lanes) or done == STEPS
+        is_over = stage.ended and expected.state in EARLY_ENDS
+        assert any(lane.halted for lane in lanes) <= (expected.state in EARLY_ENDS)
         if is_over and 0 < done < STEPS:
-            assert all(lane["halted"] for lane in lanes)
+            assert all(lane.halted for lane in lanes)
             assert frame.label.endswith(f", {expected.state} at step {done} of {STEPS}")
 
 

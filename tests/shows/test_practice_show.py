@@ -96,7 +96,7 @@ def test_live_training_is_never_shown_beyond_its_newest_step(parts: StageParts) 
 
     assert frame.lanes[0].step == 5
     assert frame.time_s == pytest.approx(5 * 0.32)
-    assert not parts.stage.state()["ended"]
+    assert not parts.stage.state().ended
 
     while advance():
         pass

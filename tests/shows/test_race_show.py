@@ -16,6 +16,7 @@ from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import fell_at_step, finish_s, lane_figures
 from hexapods.shows.race_show import LAST_LANE_SPEED, PHOTO_FINISH_S, SPEED
+from hexapods.shows.scene_view import scene_view
 from hexapods.shows.stage_frame import StageFrame
 from tests.stage.stage_parts import FRAME_S, StageParts
 
@@ -40,31 +41,31 @@ def test_show_ends_with_the_photo_finish_unless_somebody_keeps_watching(parts: S
     assert parts.watch(2.0)[-1].time_s == frame.time_s
 
     parts.stage.set(end_at_time_out=False)
-    assert not parts.stage.state()["ended"]
+    assert not parts.stage.state().ended
     assert parts.watch_to_end()[-1].lanes[2].done
 
     parts.stage.set(time_s=0, end_at_time_out=True)
     assert parts.watch_to_end()[-1].phase == "photo-finish"
     parts.stage.set(run_id=parts.finished_race(LANES).id, end_at_time_out=False)
     parts.stage.set(run_id=run.id)
-    assert parts.stage.state()["end_at_time_out"], "of a new show"
+    assert parts.stage.state().end_at_time_out, "of a new show"
 
 
 def test_decided_race_that_is_still_computed_is_live(parts: StageParts) -> None:
     """Greedy has used its steps when two-step has used few: the picture is at its end."""
     run, advance = parts.running_race(("greedy", "two-step"))
     parts.stage.set(run_id=run.id)
-    while parts.stage.state()["phase"] != "decided":
+    while parts.stage.state().phase != "decided":
         advance()
         parts.next_frame()
 
-    assert parts.stage.state()["live"]
+    assert parts.stage.state().live
     assert parts.watch(30.0)[-1].run_id == run.id
     while advance():
         pass
     parts.set_state(run, "finished")
     parts.next_frame()
-    assert parts.stage.state()["phase"] == "ended"
+    assert parts.stage.state().phase == "ended"
 
 
 @pytest.mark.parametrize("state", ["stopped", "interrupted", "failed"])
@@ -78,10 +79,8 @@ def test_race_that_ended_early_says_so_and_is_not_decided(parts: StageParts, sta
 
     assert frames[-1].label == f"{run.name}, {state} at step 8 of 30"
     assert not any(frame.phase == "photo-finish" for frame in frames)
-    lanes = frames[-1].scene()["lanes"]
-    assert [(lane["step"], lane["done"], lane["halted"]) for lane in lanes] == [
-        (8, False, True)
-    ] * 3
+    lanes = scene_view(frames[-1]).lanes
+    assert [(lane.step, lane.done, lane.halted) for lane in lanes] == [(8, False, True)] * 3
     assert frames[-1].computed_s == frames[-1].duration_s == frames[-1].time_s
 
 
@@ -104,7 +103,7 @@ def test_race_that_is_resumed_is_played_anew(parts: StageParts) -> None:
 
     assert frame.time_s == 0
     assert [lane.step for lane in frame.lanes] == [1, 1]
-    assert parts.stage.state()["phase"] == "live"
+    assert parts.stage.state().phase == "live"
 
 
 def test_automatic_speed_is_two_and_eight_for_the_last_lane(parts: StageParts) -> None:
@@ -184,7 +183,7 @@ def test_change_of_clock_at_the_photo_finish_and_at_the_end(parts: StageParts) -
     parts.stage.set(end_at_time_out=False)
     parts.watch_to_end()
     parts.stage.set(clock="wall")
-    assert parts.stage.state()["ended"]
+    assert parts.stage.state().ended
 
 
 def test_label_tells_of_the_lanes_that_still_walk(parts: StageParts) -> None:
@@ -231,7 +230,7 @@ def test_playback_waits_for_a_lane_that_is_still_computed(parts: StageParts) -> 
     assert frame.duration_s is None
     assert frame.lanes[0].qpos == pytest.approx(lanes[0].steps[-1].motion.qpos[-1])
     assert frame.lanes[0].thinking
-    assert not parts.stage.state()["ended"]
+    assert not parts.stage.state().ended
 
     while advance():
         pass
@@ -249,7 +248,7 @@ def test_robots_stand_on_the_start_line_before_anything_is_recorded(parts: Stage
 
     assert frame.phase == "start-line"
     assert [lane.step for lane in frame.lanes] == [0, 0]
-    assert not parts.stage.state()["ended"]
+    assert not parts.stage.state().ended
 
 
 def test_failed_race_is_shown_up_to_its_last_step(parts: StageParts) -> None:
@@ -300,7 +299,7 @@ def test_race_with_an_unreachable_stance_is_shown(parts: StageParts) -> None:
     parts.stage.set(run_id=run.id)
 
     assert parts.next_frame().lanes[0].qpos.shape == (25,)
-    assert parts.stage.state()["ended"]
+    assert parts.stage.state().ended
 
 
 def test_each_lane_is_shown_in_the_conditions_of_its_own_step(parts: StageParts) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.events.bus import Channel, EventBus
+from app.events.event_records import DeletedRun
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
@@ -50,7 +51,7 @@ class StageParts:
     def watch_to_end(self, at_most_s: float = 200.0) -> list[StageFrame]:
         """Return every frame until the show has ended."""
         frames: list[StageFrame] = []
-        while not self.stage.state()["ended"]:
+        while not self.stage.state().ended:
             frames += self.watch(FRAME_S)
             assert len(frames) < at_most_s / FRAME_S, "the show does not end"
         return frames
@@ -89,7 +90,7 @@ class StageParts:
         """Delete an ended run."""
         self.store.delete(run.id)
         self.recordings.discard(run.id)
-        self.bus.publish("run-deleted", {"id": run.id}, run.id)
+        self.bus.publish("run-deleted", DeletedRun(id=run.id), run.id)
 
     def finished_race(
         self, agents: tuple[str, ...] = ("greedy", "two-step"), steps: int = 12, **fields: Any

@@ -13,6 +13,7 @@ from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import finish_s
 from hexapods.shows.replay import FRAMES_PER_S, NoSuchSegment
+from hexapods.shows.scene_view import scene_view
 from tests.stage.stage_parts import StageParts
 
 LANES = ("q-learning", "greedy", "two-step")
@@ -29,7 +30,7 @@ def test_a_moment_does_not_depend_on_those_before(parts: StageParts) -> None:
         watched.frame_at(time_s)
     seen, fresh = watched.frame_at(2.5), replays_of(parts).get(run.id, "paper").frame_at(2.5)
 
-    assert seen.scene() == fresh.scene()
+    assert scene_view(seen) == scene_view(fresh)
     for seen_lane, fresh_lane in zip(seen.lanes, fresh.lanes, strict=True):
         assert np.array_equal(seen_lane.qpos, fresh_lane.qpos)
 
@@ -120,7 +121,7 @@ def test_a_race_that_is_computed_is_replayed_as_far_as_it_is(parts: StageParts) 
 
     assert 0 < first < later.recorded[-1][1]
     assert not later.is_complete
-    assert later.plan()["duration_s"] is None
+    assert later.plan().duration_s is None
 
 
 def test_a_run_without_recording_has_no_replay(parts: StageParts) -> None:
@@ -164,9 +165,9 @@ def test_lanes_of_another_run_walk_along_as_ghosts_at_their_own_time(parts: Stag
         shown = [ghost for ghost in frame.ghost_lanes if ghost is not None]
         for ghost, lane in zip(shown, expected.lanes, strict=True):
             assert np.array_equal(ghost.qpos, lane.qpos)
-        named = [(ghost["name"], ghost["step"]) for ghost in frame.scene()["ghost_lanes"]]
+        named = [(ghost.name, ghost.step) for ghost in scene_view(frame).ghost_lanes]
         assert named == [("Two-step", shown[0].step), ("Greedy", shown[1].step)]
-    assert with_ghosts.plan()["ghost_id"] == other.id
+    assert with_ghosts.plan().ghost_id == other.id
     assert with_ghosts.version != replays.get(run.id, "paper").version
 
 
@@ -181,7 +182,7 @@ def test_two_practices_walk_side_by_side(parts: StageParts) -> None:
     assert ghost is not None
     assert np.array_equal(ghost.qpos, alone.frame_at(4.0).lanes[0].qpos)
     late = with_ghosts.frame_at(with_ghosts.recorded[-1][1])
-    assert (late.lanes[0].step, late.scene()["ghost_lanes"][0]["step"]) == (30, 20), "it waits"
+    assert (late.lanes[0].step, scene_view(late).ghost_lanes[0].step) == (30, 20), "it waits"
 
 
 def test_a_ghost_is_another_run_of_the_kind_that_has_ended(parts: StageParts) -> None:

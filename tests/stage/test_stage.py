@@ -9,11 +9,17 @@ import pytest
 
 from app.stage.stage import ANNOUNCE_AFTER_S, NEXT_AFTER_S
 from app.storage.errors import NotFound
+from hexapods.domain.records import to_json
 from hexapods.runs.clocks import Timetable
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.recording import LaneRecording
 from tests.stage.stage_parts import GAIT, StageParts
+
+
+def announced_id(parts: StageParts) -> str | None:
+    announced = parts.stage.state().announced
+    return None if announced is None else announced.run_id
 
 
 def test_idle_stage_shows_the_three_agents_of_the_paper(parts: StageParts) -> None:
@@ -37,8 +43,8 @@ def test_offered_run_takes_an_idle_stage(parts: StageParts) -> None:
     run, _ = parts.running_race()
 
     assert parts.stage.offer(run.id)
-    assert parts.stage.state()["run_id"] == run.id
-    assert parts.stage.state()["live"]
+    assert parts.stage.state().run_id == run.id
+    assert parts.stage.state().live
 
 
 def test_offer_is_rejected_only_while_a_live_run_is_on_stage(parts: StageParts) -> None:
@@ -47,11 +53,11 @@ def test_offer_is_rejected_only_while_a_live_run_is_on_stage(parts: StageParts) 
     second, _ = parts.running_race()
 
     assert not parts.stage.offer(second.id)
-    assert parts.stage.state()["run_id"] == first.id
+    assert parts.stage.state().run_id == first.id
 
     parts.set_state(first, "finished")
     assert parts.stage.offer(second.id)
-    assert parts.stage.state()["run_id"] == second.id
+    assert parts.stage.state().run_id == second.id
 
 
 def test_set_replaces_a_live_run(parts: StageParts) -> None:
@@ -72,7 +78,7 @@ def test_race_is_shown_after_its_own_training(parts: StageParts) -> None:
 
     assert parts.stage.offer(race.id)
     assert parts.next_frame().spec.kind == "training"
-    assert parts.stage.state()["next_run_id"] == race.id
+    assert parts.stage.state().next_run_id == race.id
     assert parts.stage.offer(race.id), "it is on the bill already"
     while advance():
         pass
@@ -99,7 +105,7 @@ def test_training_that_was_stopped_stays_although_a_race_was_queued_behind_it(
     parts.set_state(training, "stopped")
     frame = parts.watch_to_end()[-1]
 
-    assert (frame.run_id, parts.stage.state()["next_run_id"]) == (training.id, None)
+    assert (frame.run_id, parts.stage.state().next_run_id) == (training.id, None)
     assert frame.label.endswith(", stopped at step 20 of 60")
     assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1].run_id == training.id
 
@@ -114,12 +120,12 @@ def test_replay_of_the_newest_race_is_announced_and_begins_ten_seconds_later(
 
     assert not any(frame.replay for frame in frames)
     parts.watch(ANNOUNCE_AFTER_S - 1)
-    assert parts.stage.state()["announced"] is None
+    assert parts.stage.state().announced is None
     parts.watch(2.0)
-    assert parts.stage.state()["announced"] == {
-        "run_id": newest.id,
-        "in_s": pytest.approx(9, abs=0.2),
-    }
+    announced = parts.stage.state().announced
+    assert announced is not None
+    assert announced.run_id == newest.id
+    assert announced.in_s == pytest.approx(9, abs=0.2)
     assert parts.watch(NEXT_AFTER_S - 2)[-1].run_id == training.id
     frame = parts.watch(2.0)[-1]
     assert (frame.run_id, frame.replay) == (newest.id, True)
@@ -136,7 +142,7 @@ def test_race_that_a_person_chose_stays_until_a_run_is_started(parts: StageParts
     parts.watch_to_end()
 
     assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 10)[-1].run_id == old.id
-    assert parts.stage.state()["announced"] is None
+    assert parts.stage.state().announced is None
 
     started, _ = parts.running_race()
     assert parts.stage.offer(started.id)
@@ -152,8 +158,8 @@ def test_announced_replay_does_not_begin_if_a_person_wants_the_run_to_stay(
     parts.watch(ANNOUNCE_AFTER_S + 1)
     parts.stage.set(stay=True)
 
-    assert parts.stage.state()["announced"] is None
-    assert parts.stage.state()["origin"] == "chosen"
+    assert parts.stage.state().announced is None
+    assert parts.stage.state().origin == "chosen"
     assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1].run_id == training.id
 
 
@@ -176,7 +182,7 @@ def test_announced_race_that_is_deleted_gives_way_to_another(parts: StageParts) 
     parts.stage.offer(training.id)
     parts.watch_to_end()
     parts.watch(ANNOUNCE_AFTER_S + 1)
-    assert parts.stage.state()["announced"]["run_id"] == newest.id
+    assert announced_id(parts) == newest.id
     parts.delete(newest)
 
     assert parts.watch(ANNOUNCE_AFTER_S + 2 * NEXT_AFTER_S + 1)[-1].run_id == other.id
@@ -194,7 +200,7 @@ def test_start_of_the_server_shows_where_the_newest_run_was_interrupted(parts: S
 
     frame = parts.next_frame()
     assert (frame.run_id, frame.label) == (run.id, f"{run.name}, interrupted at step 5 of 30")
-    assert parts.stage.state()["phase"] == "ended"
+    assert parts.stage.state().phase == "ended"
 
 
 def test_start_of_the_server_shows_the_run_that_was_last_at_work(parts: StageParts) -> None:
@@ -222,7 +228,7 @@ def test_a_recording_that_cannot_be_decoded_does_not_keep_the_server_from_starti
     monkeypatch.setattr(parts.recordings, "race", undecodable)
     parts.stage.restore()
 
-    assert parts.stage.state()["phase"] == "empty"
+    assert parts.stage.state().phase == "empty"
     assert "the last run cannot be shown" in caplog.text
 
 
@@ -296,10 +302,10 @@ def test_announcement_ends_when_its_race_is_deleted(parts: StageParts) -> None:
     parts.stage.offer(training.id)
     parts.watch_to_end()
     parts.watch(ANNOUNCE_AFTER_S + 1)
-    assert parts.stage.state()["announced"]["run_id"] == race.id
+    assert announced_id(parts) == race.id
     parts.delete(race)
 
-    assert parts.stage.state()["announced"] is None
+    assert parts.stage.state().announced is None
 
 
 def test_run_on_stage_has_its_new_name_when_it_is_renamed(parts: StageParts) -> None:
@@ -327,7 +333,7 @@ def test_resumed_race_takes_the_stage_back_with_its_training(parts: StageParts) 
     assert parts.stage.offer(race.id)
 
     assert parts.next_frame().run_id == training.id
-    assert parts.stage.state()["next_run_id"] == race.id
+    assert parts.stage.state().next_run_id == race.id
 
 
 def test_idle_stage_without_a_finished_race_does_not_change(parts: StageParts) -> None:
@@ -397,14 +403,14 @@ def test_changes_are_published_on_the_bus(parts: StageParts) -> None:
                 return state
         raise AssertionError("nothing was told")
 
-    assert asyncio.run(next_stage_event()) == parts.stage.state()
+    assert asyncio.run(next_stage_event()) == to_json(parts.stage.state())
 
 
 def test_scene_is_plain_json(parts: StageParts) -> None:
     for run in (parts.finished_race(("q-learning", "greedy")), parts.finished_training(30)):
         parts.stage.set(run_id=run.id)
         parts.watch(1.0)
-        scene = json.loads(json.dumps(parts.stage.scene(), allow_nan=False))
+        scene = json.loads(json.dumps(to_json(parts.stage.scene()), allow_nan=False))
 
         assert scene["run_id"] == run.id
         assert scene["lanes"][0]["color"] == "#E69F00"
@@ -451,7 +457,7 @@ def test_a_race_that_branches_off_a_race_elsewhere_is_shown_from_its_start(
     fork, _ = parts.running_race(steps=8, branch_from=Branch(original.id, 5))
     parts.stage.offer(fork.id)
 
-    assert parts.stage.state()["time_s"] == 0
+    assert parts.stage.state().time_s == 0
 
 
 def step_ends(parts: StageParts, race_id: str) -> list[float]:

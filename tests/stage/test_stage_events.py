@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.events.bus import MAX_PENDING, Channel, EventBus
+from app.events.event_records import DeletedRun, EvaluationEvent
 from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.database.opening import open_store
@@ -62,22 +63,22 @@ def test_stage_reads_no_run_while_one_is_shown(follower: Follower) -> None:
         for done in range(20):
             follower.publish(replace(run, done=done))
             assert follower.watch() == "a"
-            assert follower.stage.state()["live"]
+            assert follower.stage.state().live
     assert queries == []
 
     follower.end(run)
     with recorded_queries() as queries:
         assert follower.watch() == "a"
-        assert not follower.stage.state()["live"]
+        assert not follower.stage.state().live
     assert queries == []
 
 
 def test_state_of_the_stage_follows_an_event_without_a_frame(follower: Follower) -> None:
     run = follower.running("a")
     follower.stage.set(run_id=run.id)
-    assert follower.stage.state()["holder"] == "a"
+    assert follower.stage.state().holder == "a"
     follower.end(run)
-    assert follower.stage.state()["holder"] is None
+    assert follower.stage.state().holder is None
     assert follower.stage.offer(follower.running("b").id)
 
 
@@ -86,7 +87,7 @@ def test_event_from_before_a_run_was_shown_does_not_undo_what_was_read(follower:
     follower.publish(run)
     follower.store.change(run.id, NOT_ENDED, "finished")
     follower.stage.set(run_id=run.id)
-    assert not follower.stage.state()["live"]
+    assert not follower.stage.state().live
 
 
 def test_run_that_became_unreadable_leaves_the_stage(follower: Follower) -> None:
@@ -100,16 +101,17 @@ def test_run_that_became_unreadable_leaves_the_stage(follower: Follower) -> None
 def test_stage_that_is_not_drawn_for_long_misses_no_change(follower: Follower) -> None:
     run = follower.running("a")
     follower.stage.set(run_id=run.id)
+    evaluated = EvaluationEvent(run_id=run.id, step=1, distance_m=0.1, epsilon=0.5)
     for number in range(MAX_PENDING + 1):
-        follower.bus.publish("run-deleted", {"id": f"other {number}"}, f"other {number}")
-        follower.bus.publish("evaluation", {"step": number}, run.id)
-        follower.bus.publish("run-deleted", {"id": run.id}, run.id)
+        follower.bus.publish("run-deleted", DeletedRun(id=f"other {number}"), f"other {number}")
+        follower.bus.publish("evaluation", evaluated, run.id)
+        follower.bus.publish("run-deleted", DeletedRun(id=run.id), run.id)
         follower.publish(run)
-    assert follower.stage.state()["live"]
+    assert follower.stage.state().live
     follower.end(run)
     assert follower.watch(1) == "a"
-    assert not follower.stage.state()["live"]
-    follower.bus.publish("run-deleted", {"id": run.id}, run.id)
+    assert not follower.stage.state().live
+    follower.bus.publish("run-deleted", DeletedRun(id=run.id), run.id)
     assert follower.watch(1) is None
 
 
@@ -117,14 +119,14 @@ def test_next_run_of_the_playlist_is_shown_without_a_read(follower: Follower) ->
     first = follower.running("a")
     follower.store.create(race("b", waiting_for=("a",)))
     assert follower.stage.offer("b")
-    assert follower.stage.state()["next_run_id"] == "b"
+    assert follower.stage.state().next_run_id == "b"
     follower.end(first)
     with recorded_queries() as queries:
-        follower.bus.publish("run-deleted", {"id": "a"}, "a")
-        assert follower.stage.state()["run_id"] == "b"
+        follower.bus.publish("run-deleted", DeletedRun(id="a"), "a")
+        assert follower.stage.state().run_id == "b"
     assert queries == []
-    follower.bus.publish("run-deleted", {"id": "b"}, "b")
-    assert follower.stage.state()["run_id"] is None
+    follower.bus.publish("run-deleted", DeletedRun(id="b"), "b")
+    assert follower.stage.state().run_id is None
 
 
 def test_refused_run_leaves_the_stage_to_follow_the_one_before(follower: Follower) -> None:
@@ -136,7 +138,7 @@ def test_refused_run_leaves_the_stage_to_follow_the_one_before(follower: Followe
             follower.stage.set(run_id=run_id)
     follower.end(run)
     assert follower.watch(1) == "a"
-    assert not follower.stage.state()["live"]
+    assert not follower.stage.state().live
 
 
 def test_stage_of_a_closed_bus_reads_no_store(follower: Follower) -> None:

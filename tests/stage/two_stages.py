@@ -32,6 +32,7 @@ def two_stages(data: Path) -> Iterator[int]:
             roles=Roles(TOKENS[SECOND]),
             viewer_slots=ClientSlots(9, 9),
             path=SECOND,
+            members=services.features.stage_members(),
         )
         services.stages.append(second)
         with running(app) as port:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import cast
 
 from app.features.experiments.messages import Reported, TrialsDone
+from app.features.experiments.response_models import SummaryEvent
 from app.features.experiments.trial_rows import Trials
 from app.jobs.job import Job
 from app.jobs.messages import Ended, Message
@@ -26,7 +27,8 @@ class ExperimentJob(Job):
         elif isinstance(message, Reported):
             self._store.put_artifact(self.run_id, message.name, message.data)
             if message.name == SUMMARY:
-                self._publish_event("summary", done=self.last.done, total=self.last.total)
+                event = SummaryEvent(run_id=self.run_id, done=self.last.done, total=self.last.total)
+                self._publish_event("summary", event)
         else:
             super()._handle(message)
 
