@@ -1,6 +1,5 @@
 """Answers about stored robots."""
 
-import json
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,9 +7,9 @@ from app.answer import Answer
 from app.storage.database.robots import RobotOrigin
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.creatures import own_gait
-from hexapods.domain.gait import AnyGait, gait_as_json, resolve
+from hexapods.domain.gait import AnyGait, resolve
 from hexapods.domain.kinematics import legs_of
-from hexapods.domain.records import to_json
+from hexapods.domain.records import from_json
 from hexapods.domain.robot import legs_written_out, written_out
 from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.imported import FileFormat, ImportedLeg
@@ -90,38 +89,37 @@ class WholeRobotView(StoredRobotView):
     found: FoundView | None
 
 
-def robot_view(stored: StoredRobot) -> dict[str, Any]:
-    """Return a stored robot as a `StoredRobotView`.
+def robot_view(stored: StoredRobot) -> StoredRobotView:
+    """Return a stored robot with its gait and its legs.
 
     Raises:
         InvalidInput: if its document is not there, or damaged.
     """
-    made = stored.robot
-    gait, legs = own_gait(made), legs_of(made)
-    return {
-        **to_json(stored),
-        "gait": gait_as_json(gait),
-        "groups": [list(group) for group in resolve(gait, made.azimuths_deg).groups],
-        "legs": [
-            {
-                "leg": number,
-                "azimuth_deg": azimuth_deg,
-                "joints": [joint.name for joint in legs.of_leg(number)],
-            }
-            for number, azimuth_deg in enumerate(made.azimuths_deg, start=1)
+    robot = stored.robot
+    gait, legs = own_gait(robot), legs_of(robot)
+    return StoredRobotView(
+        **vars(stored) | {"gait": gait},
+        groups=[list(group) for group in resolve(gait, robot.azimuths_deg).groups],
+        legs=[
+            StoredLeg(
+                leg=number,
+                azimuth_deg=azimuth_deg,
+                joints=[joint.name for joint in legs.of_leg(number)],
+            )
+            for number, azimuth_deg in enumerate(robot.azimuths_deg, start=1)
         ],
-    }
+    )
 
 
-def whole_view(stored: StoredRobot, origin: RobotOrigin | None) -> dict[str, Any]:
-    """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
-    made = stored.robot
-    gait = own_gait(made)
-    walk = WalkingProblem(gait=gait, robot=made, grid_side_m=usual_grid_side_m(made, gait))
-    numbers = {name: value for name, value in written_out(made).items() if value is not None}
-    return {
-        **robot_view(stored),
-        "robot": {**numbers, "legs": legs_written_out(made)},
-        "preview": to_json(preview(walk)),
-        "found": None if origin is None else json.loads(origin.found),
-    }
+def whole_view(stored: StoredRobot, origin: RobotOrigin | None) -> WholeRobotView:
+    """Return a stored robot with all that is known of it; errors as of `robot_view`."""
+    robot = stored.robot
+    gait = own_gait(robot)
+    walk = WalkingProblem(gait=gait, robot=robot, grid_side_m=usual_grid_side_m(robot, gait))
+    numbers = {name: value for name, value in written_out(robot).items() if value is not None}
+    return WholeRobotView(
+        **vars(robot_view(stored)),
+        robot={**numbers, "legs": legs_written_out(robot)},
+        preview=preview(walk),
+        found=None if origin is None else from_json(FoundView, origin.found),
+    )

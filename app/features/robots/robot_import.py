@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
+from app.features.robots.response_models import FoundView
 from app.storage.database.robots import RobotOrigin
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy
@@ -16,7 +17,7 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.gait import GaitSpec, gait_spec, read_gait, resolve
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.model_robot import ModelRobot, model_robot
-from hexapods.domain.records import to_json
+from hexapods.domain.records import to_json, to_json_bytes
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.domain.text import MAX_NAME, check_name, visible
@@ -140,9 +141,16 @@ def _of_file(
 
 
 def _description(imported: ImportedRobot) -> bytes:
-    names = ("file_format", "file", "legs", "feet", "keyframes", "forward_deg", "reaches_grid")
-    fields = to_json(imported)
-    return json.dumps({name: fields[name] for name in names}).encode()
+    description = FoundView(
+        file_format=imported.file_format,
+        file=imported.file,
+        legs=list(imported.legs),
+        feet=list(imported.feet),
+        keyframes=list(imported.keyframes),
+        forward_deg=imported.forward_deg,
+        reaches_grid=imported.reaches_grid,
+    )
+    return to_json_bytes(description)
 
 
 def _is_model(data: bytes) -> bool:
@@ -151,7 +159,7 @@ def _is_model(data: bytes) -> bool:
 
 
 def _distinct(store: RunStore, name: str) -> str:
-    taken = [stored.name for stored in store.robots.stored(hidden=True)]
+    taken = [robot.name for robot in store.robots.stored(hidden=True)]
     return distinct_name(name or _UNNAMED, taken)
 
 

@@ -5,13 +5,14 @@ from typing import Annotated, Any
 from fastapi import Path, Query
 from pydantic import ConfigDict, Field
 from starlette.convertors import StringConvertor, register_url_convertor
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
 from app.api.deps import BodyDep, ServicesDep
 from app.api.fields import Body, Name
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.record_response import RecordResponse
 from app.api.schemas import PatchBody, one_given
 from app.api.work import ANALYSIS, ENCODING
 from app.features.robots.response_models import (
@@ -70,7 +71,6 @@ class RobotChangeBody(PatchBody):
     "",
     status_code=201,
     summary="Store a robot",
-    response_model=StoredRobotView,
     responses=answers(201, headers=LOCATION) | {200: {"model": StoredRobotView}},
     openapi_extra={
         "requestBody": {
@@ -88,7 +88,7 @@ def store_robot(
     body: BodyDep,
     name: Annotated[Name | None, Query()] = None,
     file: Annotated[Name | None, Query(description="name of the file")] = None,
-) -> Response:
+) -> RecordResponse[StoredRobotView]:
     """Store a body, `{"robot": …}`, the document of a robot, or a robot's file.
 
     A file is MJCF or URDF, alone or in a zip with its meshes. What was guessed of it and repaired
@@ -98,36 +98,36 @@ def store_robot(
     stored, is_new = import_robot(services.store, body, name, file or None)
     services.publish_robots()
     location = {"Location": f"/api/v1/robots/{stored.id}"}
-    return JSONResponse(robot_view(stored), 201 if is_new else 200, location)
+    return RecordResponse(robot_view(stored), 201 if is_new else 200, location)
 
 
-@router.get("", summary="List stored robots", response_model=StoredRobotsView)
+@router.get("", summary="List stored robots")
 @policy(access=WATCH)
 def list_robots(
     services: ServicesDep,
     hidden: Annotated[bool, Query(description="true, to list hidden ones too")] = False,
-) -> Response:
+) -> RecordResponse[StoredRobotsView]:
     """List the robots that people have stored; `GET /options` lists those that are built in too."""
-    return JSONResponse(
-        {"items": [robot_view(one) for one in services.store.robots.readable(hidden=hidden)]}
-    )
+    robots = services.store.robots.readable(hidden=hidden)
+    return RecordResponse(StoredRobotsView(items=[robot_view(robot) for robot in robots]))
 
 
-@router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
+@router.get("/{robot_id:robot}", summary="Get a stored robot")
 @policy(access=WATCH, work=ANALYSIS, depends_on_state=False)
-def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
+def get_robot(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[WholeRobotView]:
     """Return a stored robot with all its numbers, and what is known of it before it walks."""
     robots = services.store.robots
-    return JSONResponse(whole_view(robots.get(robot_id), robots.origin(robot_id)))
+    return RecordResponse(whole_view(robots.get(robot_id), robots.origin(robot_id)))
 
 
 @router.patch(
     "/{robot_id:robot}",
     summary="Rename or hide a stored robot, give it another gait, or correct it",
-    response_model=StoredRobotView,
 )
 @policy(access=OPERATOR, work=ENCODING)
-def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody) -> Response:
+def change_robot(
+    services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody
+) -> RecordResponse[StoredRobotView]:
     """Change what is said of a robot, which keeps its id, or how its file is read.
 
     With `choices` the file is read again: the answer has the new robot's id. The one before is
@@ -143,7 +143,7 @@ def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBo
         robot_id = correct_robot(services.store, robot_id, choices).id
     changed = robots.change(robot_id, **changes) if changes else robots.get(robot_id)
     services.publish_robots()
-    return JSONResponse(robot_view(changed))
+    return RecordResponse(robot_view(changed))
 
 
 @router.delete(
