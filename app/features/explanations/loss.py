@@ -6,10 +6,11 @@ table the learner had tried, what the best moves there would have brought, and w
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
+from typing import Literal, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
+from app.features.explanations.response_models import LossView
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import Run
@@ -71,6 +72,18 @@ class Tried(NamedTuple):
     moves_there: int
 
 
+class Standing(NamedTuple):
+    """A lane that is behind in a race; the members as of `LossView`."""
+
+    run_id: str
+    lane: int
+    agent: str
+    clock: Clock
+    is_ranked: bool
+    ahead: int
+    behind_m: float
+
+
 @runtime_checkable
 class ValuedTable(Tabular, Valuing, Protocol):
     """Learner with a table that tells its values and visits."""
@@ -78,14 +91,14 @@ class ValuedTable(Tabular, Valuing, Protocol):
 
 def standing_of(
     run: Run, lanes: Sequence[LaneRecording], lane: int, steps: int, clock: Clock
-) -> dict[str, Any]:
+) -> Standing:
     """Return by how much a lane is behind, and whom: at time-out, or before by its steps so far.
 
     Raises:
         Conflict: if it is not behind.
     """
     figures = lane_figures(lanes, steps, clock)
-    ranked = [lane_result.finished_distance_m for lane_result in figures]
+    ranked = [figure.finished_distance_m for figure in figures]
     distances_m = [
         recording.distance_m if metres is None else metres
         for recording, metres in zip(lanes, ranked, strict=True)
@@ -97,12 +110,15 @@ def standing_of(
             "what loses is asked why",
             run.state,
         )
-    return {
-        "clock": clock,
-        "is_ranked": ranked[lane] is not None,
-        "ahead": first,
-        "behind_m": distances_m[first] - distances_m[lane],
-    }
+    return Standing(
+        run_id=run.id,
+        lane=lane,
+        agent=lanes[lane].agent,
+        clock=clock,
+        is_ranked=ranked[lane] is not None,
+        ahead=first,
+        behind_m=distances_m[first] - distances_m[lane],
+    )
 
 
 def practised_steps(store: RunStore, training_id: str | None) -> int | None:
@@ -173,14 +189,16 @@ def _count_tried_moves(agent: Valuing, cells: Cells) -> tuple[int, int]:
     return int(np.count_nonzero(agent.visits(cells)[legal])), int(legal.sum())
 
 
-def loss_as_json(
+def loss_view(
+    standing: Standing,
     compared: Sequence[ComparedMove],
     learner_before: Callable[[int], ValuedTable],
     practised_steps: int | None,
-) -> dict[str, Any]:
+) -> LossView:
     """Return why a lane lost, in numbers and in three sentences.
 
     Args:
+        standing: of the lane.
         compared: each step of the lane beside the best move there.
         learner_before: returns the learner as it was before a step, counted from 0; called in
             order.
@@ -192,25 +210,26 @@ def loss_as_json(
     best_m = ordered_sum(move.best_reward_m for move in compared) / len(compared)
     counts = {kind: reasons.count(kind) for kind in ("untried", "undervalued", "not chosen")}
     better = len(compared) - reasons.count(None)
-    return {
-        "steps": len(compared),
-        "practised_steps": practised_steps,
+    return LossView(
+        **standing._asdict(),
         **tried._asdict(),
-        "reward_m": made_m,
-        "best_reward_m": best_m,
-        "better_by_m": BETTER_M,
-        "better": better,
-        "untried": counts["untried"],
-        "undervalued": counts["undervalued"],
-        "not_chosen": counts["not chosen"],
-        "sentences": [
+        steps=len(compared),
+        practised_steps=practised_steps,
+        reward_m=made_m,
+        best_reward_m=best_m,
+        better_by_m=BETTER_M,
+        better=better,
+        untried=counts["untried"],
+        undervalued=counts["undervalued"],
+        not_chosen=counts["not chosen"],
+        sentences=[
             _about_table(tried, practised_steps),
             f"Its {counted(len(compared), 'step')} brought {in_millimetres(made_m)} each on "
             f"average; the best move from where it stood, simulated, would have brought "
             f"{in_millimetres(best_m)}.",
             _about_better(len(compared), better, counts),
         ],
-    }
+    )
 
 
 def _about_table(tried: Tried, practised_steps: int | None) -> str:

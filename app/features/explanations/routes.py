@@ -9,9 +9,9 @@ from app.api.deps import ServicesDep
 from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.runs import RunPath, find
 from app.api.work import ANALYSIS
-from app.features.explanations.explanation_json import MAX_VALUES_SHOWN
 from app.features.explanations.response_models import ExplanationView, LossView, TableView
 from app.features.explanations.service import Explanations
+from app.features.explanations.views import MAX_VALUES_SHOWN
 from hexapods.runs.clocks import Clock
 
 runs = api_router(prefix="/runs", tags=["runs"])

@@ -2,27 +2,28 @@
 
 import json
 from collections.abc import Callable, Hashable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from cachetools import LRUCache
 
 from app.cache import BytesCache
-from app.features.explanations.explanation_json import (
-    MAX_VALUES_SHOWN,
-    SearchFindings,
-    explanation_as_json,
-    table_as_json,
-)
 from app.features.explanations.loss import (
     LIMIT_S,
     ValuedTable,
     WalkedLane,
-    loss_as_json,
+    loss_view,
     practised_steps,
     simulate,
     standing_of,
 )
 from app.features.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
+from app.features.explanations.response_models import ExplanationView, LossView, TableView
+from app.features.explanations.views import (
+    MAX_VALUES_SHOWN,
+    SearchFindings,
+    explanation_view,
+    table_view,
+)
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns
@@ -36,6 +37,7 @@ from hexapods.agents import registry
 from hexapods.agents.protocol import Tabular, Valuing
 from hexapods.assembly import rebuild_lane, rebuild_learner
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import Record, to_json_bytes
 from hexapods.domain.types import Action
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
@@ -103,10 +105,10 @@ class Explanations:
         # Read after the log, when all changes before its last step are stored.
         run, steps = self._store.get(run_id), _TrainingSteps(log)
 
-        def answer() -> dict[str, Any]:
+        def answer() -> ExplanationView:
             practice = _in(run, lambda: self._practice(run, config, steps))
             explained = _in(run, lambda: practice.explain(number, steps, run.changes))
-            return explanation_as_json(run_id, config, config.agent, explained)
+            return explanation_view(run_id, config, config.agent, explained)
 
         return self._answer((_version(run, number, steps), number), answer)
 
@@ -138,7 +140,7 @@ class Explanations:
             raise InvalidInput(f"first must be from 0 to {cells**groups - 1:,}, not {first}")
         count = min(count, MAX_VALUES_SHOWN // (groups * cells))
 
-        def answer() -> dict[str, Any]:
+        def answer() -> TableView:
             practice = _in(run, lambda: self._practice(run, config, steps))
             learner = _in(run, lambda: practice.learner_at(number, steps, run.changes))
             if not isinstance(learner.agent, Tabular) or not isinstance(learner.agent, Valuing):
@@ -147,8 +149,12 @@ class Explanations:
                 )
             table = learner.agent.table
             states = [table.cells_at(n) for n in range(first, min(first + count, table.states))]
-            shown = {"step": number, "first": first, "total": table.states}
-            return table_as_json(config, learner.agent, table, states, **shown)
+            return table_view(
+                *(config, learner.agent, table, states),
+                step=number,
+                first=first,
+                total=table.states,
+            )
 
         # After the last step settings may still be changed, which changes no value.
         return self._answer((_version(run, number, steps), "table", number, first, count), answer)
@@ -179,7 +185,7 @@ class Explanations:
         standing = standing_of(run, self._recordings.race(run.id) or [], lane, config.steps, clock)
         steps = LoggedLane(recording, config.lanes[lane].observation == "measured")
 
-        def answer() -> dict[str, Any]:
+        def answer() -> LossView:
             practice = _in(run, lambda: self._lane_practice(run, config, lane, steps))
 
             def learner_before(step: int) -> ValuedTable:
@@ -198,10 +204,9 @@ class Explanations:
             except InvalidInput as error:
                 raise Conflict(f"it cannot be walked again: {error}", run.state) from error
             practised = practised_steps(self._store, run.lane_training_ids[lane])
-            numbers = _in(run, lambda: loss_as_json(compared, learner_before, practised))
-            return {"run_id": run_id, "lane": lane, "agent": recording.agent, **standing, **numbers}
+            return _in(run, lambda: loss_view(standing, compared, learner_before, practised))
 
-        key = (_version(run, number, steps), "loss", lane, number, json.dumps(standing))
+        key = (_version(run, number, steps), "loss", lane, number, standing)
         return self._answer(key, answer)
 
     def _lane(self, run: Run, lane: int) -> LaneRecording:
@@ -212,8 +217,8 @@ class Explanations:
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
         return lanes[lane]
 
-    def _answer(self, key: Hashable, answer: Callable[[], dict[str, Any]]) -> bytes:
-        """Return a known answer, or a new one."""
+    def _answer(self, key: Hashable, answer: Callable[[], Record]) -> bytes:
+        """Return the answer that is kept, as JSON, or a new one."""
         cached = self._answers.get(key)
         if cached is not None:
             return cached
@@ -221,7 +226,7 @@ class Explanations:
             # Another request may have asked for the same meanwhile.
             cached = self._answers.get(key)
             if cached is None:
-                cached = json.dumps(answer(), ensure_ascii=False, allow_nan=False).encode()
+                cached = to_json_bytes(answer())
                 self._answers.put(key, cached)
             return cached
 
@@ -230,7 +235,7 @@ class Explanations:
         number = _checked_step(step, len(recording.steps), config.steps, run)
         steps = LoggedLane(recording, lane_config.observation == "measured")
 
-        def answer() -> dict[str, Any]:
+        def answer() -> ExplanationView:
             why = None
             explained = ExplainedStep(number, steps.step(number - 1), None, None, None)
             search = _search_of(lane_config.agent, recording.steps[number - 1])
@@ -240,7 +245,7 @@ class Explanations:
                     explained = practice.explain(number, steps, ())
                 except (Conflict, InvalidInput, NotRebuilt) as error:
                     why = str(error)
-            return explanation_as_json(
+            return explanation_view(
                 *(run.id, config, lane_config.agent, explained),
                 lane=lane,
                 search=search,

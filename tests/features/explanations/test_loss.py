@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.features.explanations.loss import count_tried, loss_as_json, passed_over
+from app.features.explanations.loss import Standing, count_tried, loss_view, passed_over
 from hexapods.agents.afterstate_q import AfterstateQ
 from hexapods.agents.protocol import Problem, Transition
 from hexapods.agents.q_learning import QLearning
@@ -17,6 +17,7 @@ from hexapods.runs.move_comparison import ComparedMove
 HOME: Cells = (0, 0, 0)
 PAIRS = ((1, 4), (2, 5), (3, 6))
 MADE, BEST = Action(0, 1), Action(1, 2)
+BEHIND = Standing("race", 0, "q-learning", "paper", is_ranked=True, ahead=1, behind_m=0.1)
 
 
 def learner(kind: type[TabularLearner] = QLearning, **rewards_m: float) -> Any:
@@ -71,10 +72,10 @@ def test_of_a_learner_over_landings_these_are_counted() -> None:
 
 def test_three_sentences_have_the_numbers() -> None:
     agent = learner(made=0.01)
-    loss = loss_as_json([step(), step(), step(0.005)], lambda _: agent, practised_steps=10)
-    table, moves, better = loss["sentences"]
+    loss = loss_view(BEHIND, [step(), step(), step(0.005)], lambda _: agent, practised_steps=10)
+    table, moves, better = loss.sentences
 
-    assert (loss["better"], loss["untried"], loss["undervalued"]) == (2, 2, 0)
+    assert (loss.better, loss.untried, loss.undervalued) == (2, 2, 0)
     assert "In 10 steps of practice it had tried 1 of the 1500 moves in its table (0 %)" in table
     assert "1 of the 12 moves in the state that it walked through" in table
     assert "Its 3 steps brought 5.00 mm each on average" in moves
@@ -84,7 +85,7 @@ def test_three_sentences_have_the_numbers() -> None:
 
 
 def test_where_no_move_was_better_it_says_so() -> None:
-    loss = loss_as_json([step(0.005)], lambda _: learner(), practised_steps=None)
+    loss = loss_view(BEHIND, [step(0.005)], lambda _: learner(), practised_steps=None)
 
-    assert loss["sentences"][0].startswith("Before its last step it had tried 0 of")
-    assert "In none of its 1 step would another move have brought 1 mm more" in loss["sentences"][2]
+    assert loss.sentences[0].startswith("Before its last step it had tried 0 of")
+    assert "In none of its 1 step would another move have brought 1 mm more" in loss.sentences[2]

@@ -1,15 +1,28 @@
-"""Explanations and tables in plain types, for answers in JSON."""
+"""Explanations and tables as the API responds with them."""
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from app.features.explanations.response_models import (
+    BeliefView,
+    ChoiceView,
+    ExplanationView,
+    FutureView,
+    LandingsView,
+    OtherUpdates,
+    SearchView,
+    TableView,
+    TermView,
+    UpdateView,
+    ValueUpdateView,
+    WalkedGrid,
+)
 from hexapods.agents.explanation import (
     ChoiceExplanation,
     Future,
-    Term,
     UpdateExplanation,
     ValueUpdate,
     in_millimetres,
@@ -39,16 +52,17 @@ class ActionNames:
         legs = " and ".join(map(str, self._groups[action.group]))
         return f"legs {legs} to {self._grid.name(action.cell)}"
 
-    def as_json(self) -> dict[str, Any]:
-        """Return the groups of legs and the cells of the foot grid."""
-        return {
-            "pairs": [list(group) for group in self._groups],
-            "cells_m": self._grid.cells.round(5).tolist(),
-            "cell_names": [self._grid.name(cell) for cell in range(len(self._grid))],
-        }
+    @property
+    def grid(self) -> WalkedGrid:
+        """The groups of legs and the cells of the foot grid."""
+        return WalkedGrid(
+            pairs=[list(group) for group in self._groups],
+            cells_m=[(x_m, y_m) for x_m, y_m in self._grid.cells.round(5).tolist()],
+            cell_names=[self._grid.name(cell) for cell in range(len(self._grid))],
+        )
 
 
-def explanation_as_json(
+def explanation_view(
     run_id: str,
     walk: WalkingProblem,
     agent: str,
@@ -57,7 +71,7 @@ def explanation_as_json(
     lane: int | None = None,
     search: "SearchFindings | None" = None,
     unexplained: str | None = None,
-) -> dict[str, Any]:
+) -> ExplanationView:
     """Return an explained step.
 
     Args:
@@ -70,22 +84,22 @@ def explanation_as_json(
         unexplained: why there is no explanation of its choice.
     """
     names, logged = ActionNames(walk), explained.logged
-    return {
-        "run_id": run_id,
-        "lane": lane,
-        "step": explained.step,
-        "agent": agent,
-        **names.as_json(),
-        "observation": list(logged.observation),
-        "action": list(logged.action),
-        "reward_m": logged.reward_m,
-        "next_observation": list(logged.next_observation) or None,
-        "visits": None if explained.visits is None else _rows(explained.visits),
-        "choice": None if explained.choice is None else _choice(explained, names),
-        "update": None if explained.update is None else _update(explained.update, names),
-        "search": None if search is None else _search(search, logged, names),
-        "unexplained": unexplained,
-    }
+    return ExplanationView(
+        **vars(names.grid),
+        run_id=run_id,
+        lane=lane,
+        step=explained.step,
+        agent=agent,
+        observation=list(logged.observation),
+        action=logged.action,
+        reward_m=logged.reward_m,
+        next_observation=list(logged.next_observation) or None,
+        visits=None if explained.visits is None else _rows(explained.visits),
+        choice=None if explained.choice is None else _choice(explained, names),
+        update=None if explained.update is None else _update(explained.update, names),
+        search=None if search is None else _search(search, logged, names),
+        unexplained=unexplained,
+    )
 
 
 class SearchFindings(NamedTuple):
@@ -102,16 +116,16 @@ class SearchFindings(NamedTuple):
     futures: Sequence[Future]
 
 
-def _search(search: SearchFindings, logged: Logged, names: ActionNames) -> dict[str, Any]:
+def _search(search: SearchFindings, logged: Logged, names: ActionNames) -> SearchView:
     best_first = sorted(
         search.futures, key=lambda future: (future.action != logged.action, -future.return_m)
     )
-    return {
-        "compares": search.compares,
-        "transitions": search.transitions,
-        "futures": [{**future._asdict(), "action": list(future.action)} for future in best_first],
-        "sentences": _search_sentences(search, best_first, logged, names),
-    }
+    return SearchView(
+        compares=search.compares,
+        transitions=search.transitions,
+        futures=[FutureView(**future._asdict()) for future in best_first],
+        sentences=_search_sentences(search, best_first, logged, names),
+    )
 
 
 def _search_sentences(
@@ -143,24 +157,24 @@ def _search_sentences(
     return sentences
 
 
-def _choice(explained: ExplainedStep, names: ActionNames) -> dict[str, Any]:
+def _choice(explained: ExplainedStep, names: ActionNames) -> ChoiceView:
     choice = explained.choice
     assert choice is not None  # noqa: S101 - the caller has checked
     sentences = _reasons(choice, names)
     if explained.chose_early:
         sentences.append("It chose so before it learned from the step before, by the values then.")
-    return {
-        "kind": choice.kind,
-        "criterion": choice.criterion,
-        "scores": _rows(choice.scores),
-        "best": [list(action) for action in choice.best],
-        "runner_up": None if choice.runner_up is None else list(choice.runner_up),
-        "margin_m": choice.margin,
-        "epsilon": choice.epsilon,
-        "draw": choice.draw,
-        "probability": choice.probability,
-        "sentences": sentences,
-    }
+    return ChoiceView(
+        kind=choice.kind,
+        criterion=choice.criterion,
+        scores=_rows(choice.scores),
+        best=[*choice.best],
+        runner_up=choice.runner_up,
+        margin_m=choice.margin,
+        epsilon=choice.epsilon,
+        draw=choice.draw,
+        probability=choice.probability,
+        sentences=sentences,
+    )
 
 
 def _reasons(choice: ChoiceExplanation, names: ActionNames) -> list[str]:
@@ -210,44 +224,44 @@ def _wanted(choice: ChoiceExplanation, names: ActionNames) -> str:
     return f"have moved {names.move(best)}, {in_millimetres(-(choice.margin or 0))} better"
 
 
-def _update(explained: UpdateExplanation, names: ActionNames) -> dict[str, Any]:
-    further = explained.others
+def _update(explained: UpdateExplanation, names: ActionNames) -> UpdateView:
+    updates = explained.others
     changed = {
-        (update.observation, update.action) for update in further if update.before != update.after
+        (update.observation, update.action) for update in updates if update.before != update.after
     }
-    largest = sorted(further, key=lambda update: -abs(update.after - update.before))[:MAX_OTHERS]
-    return {
-        "summary": explained.summary,
-        "direct": None if explained.update is None else _value_update(explained.update, names),
-        "stored": explained.stored,
-        "others": {
-            "count": len(further),
-            "values_changed": len(changed),
-            "largest": [_value_update(update, names) for update in further if update in largest],
-        },
-        "beliefs": [belief._asdict() for belief in explained.beliefs],
-    }
+    by_change = sorted(updates, key=lambda update: -abs(update.after - update.before))
+    largest = by_change[:MAX_OTHERS]
+    return UpdateView(
+        summary=explained.summary,
+        direct=None if explained.update is None else _value_update(explained.update, names),
+        stored=explained.stored,
+        others=OtherUpdates(
+            count=len(updates),
+            values_changed=len(changed),
+            largest=[_value_update(update, names) for update in updates if update in largest],
+        ),
+        beliefs=[BeliefView(**belief._asdict()) for belief in explained.beliefs],
+    )
 
 
-def _value_update(update: ValueUpdate, names: ActionNames) -> dict[str, Any]:
-    return {
-        "observation": list(update.observation),
-        "action": list(update.action),
-        "move": names.move(update.action),
-        "rule": update.rule,
-        "numbers": update.numbers,
-        "terms": [_term(term) for term in update.terms],
-        "before": update.before,
-        "after": update.after,
-        "is_exact": update.is_exact,
-    }
+def _value_update(update: ValueUpdate, names: ActionNames) -> ValueUpdateView:
+    return ValueUpdateView(
+        observation=list(update.observation),
+        action=update.action,
+        move=names.move(update.action),
+        rule=update.rule,
+        numbers=update.numbers,
+        terms=[
+            TermView(symbol=term.symbol, value=float(term.value), meaning=term.meaning)
+            for term in update.terms
+        ],
+        before=update.before,
+        after=update.after,
+        is_exact=update.is_exact,
+    )
 
 
-def _term(term: Term) -> dict[str, Any]:
-    return {"symbol": term.symbol, "value": float(term.value), "meaning": term.meaning}
-
-
-def table_as_json(
+def table_view(
     walk: WalkingProblem,
     agent: Valuing,
     table: ValueTable,
@@ -256,7 +270,7 @@ def table_as_json(
     step: int,
     first: int,
     total: int,
-) -> dict[str, Any]:
+) -> TableView:
     """Return values, visits and best actions of some states.
 
     Args:
@@ -269,29 +283,29 @@ def table_as_json(
         total: number of all states.
     """
     values = [agent.values(state) for state in states]
-    return {
-        "step": step,
-        **ActionNames(walk).as_json(),
-        "states": total,
-        "first": first,
-        "values": [_flat(row) for row in values],
-        "visits": [_flat(agent.visits(state)) for state in states],
-        "best": [_best(row) for row in values],
-        "landings": _landings_as_json(table),
-    }
+    return TableView(
+        **vars(ActionNames(walk).grid),
+        step=step,
+        states=total,
+        first=first,
+        values=[_flat(row) for row in values],
+        visits=[_flat(agent.visits(state)) for state in states],
+        best=[_best(row) for row in values],
+        landings=_landings(table),
+    )
 
 
-def _landings_as_json(table: ValueTable) -> dict[str, Any] | None:
+def _landings(table: ValueTable) -> LandingsView | None:
     """Return values and visits of all landings; None for another table, or one too large."""
     if not isinstance(table, LandingTable) or table.size > MAX_VALUES_SHOWN:
         return None
     _, values, visits = zip(*table.rows(), strict=True)
-    return {"values": values, "visits": visits}
+    return LandingsView(values=list(values), visits=list(visits))
 
 
-def _best(values: FloatArray) -> list[int]:
-    """Return the first action with the highest value, as (group, cell)."""
-    return [int(index) for index in np.unravel_index(np.nanargmax(values), values.shape)]
+def _best(values: FloatArray) -> Action:
+    """Return the first action with the highest value."""
+    return Action(*map(int, np.unravel_index(np.nanargmax(values), values.shape)))
 
 
 def _flat(values: FloatArray) -> list[float | None]:
