@@ -11,7 +11,7 @@ from sphinx.application import Sphinx
 
 import hexapods
 from app.cli import main
-from app.cli.commands import command_modules
+from app.cli.commands import command_paths
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -95,7 +95,7 @@ def _cell(text: str) -> str:
 
 def _commands() -> Iterator[str]:
     yield "# Commands"
-    for name in command_modules():
+    for name in command_paths():
         shown = io.StringIO()
         with contextlib.redirect_stdout(shown), contextlib.suppress(SystemExit):
             main([name, "--help"])

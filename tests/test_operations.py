@@ -5,7 +5,7 @@ import shutil
 import sqlite3
 from pathlib import Path
 
-from app.cli.commands import command_modules
+from app.cli.commands import command_paths
 from app.setting_fields import PREFIX
 from app.storage.database.migration import newest_revision
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
@@ -47,7 +47,7 @@ def test_the_document_has_the_version_of_each_format() -> None:
 def test_every_command_is_one() -> None:
     said = set(re.findall(r"hexapods (runs|export|import|serve|doctor|\w+ly)\b", TEXT))
     assert said == {"runs", "export", "import", "serve", "doctor"}
-    assert said <= set(command_modules())
+    assert said <= set(command_paths())
 
 
 def test_every_promise_is_there() -> None:

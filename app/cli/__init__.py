@@ -1,12 +1,13 @@
-"""The `hexapods` command line: each command parses its options and makes one call.
+"""The `hexapods` command line: each command is a function that makes one call.
 
+Its signature declares arguments and options, and its docstring is its description in `--help`.
 Commands: `serve`, `train`, `race`, `benchmark`, `runs` (list, show, delete), `verify`
 (by a `verifier` of each kind of file; score files in `verify_benchmark`), `doctor` (with checks in
 `machine_checks` and `data_checks`), `bench` (with the measurements in `benchmarks`).
-Most descriptions in `--help` are module docstrings.
-`program` has the parser of all, and runs one.
+`program` makes the program of all, and runs one.
 Features add commands of their own, and verbs and verifiers of these (`commands`).
-Shared: `options` (options and parsers of their values), `files` (files that users name),
+Shared: `options` (options and readers of their values), `setting_options` (options of declared
+settings and of agents), `files` (files that users name),
 `stored_runs` (runs of a data folder), `robot_names` (stored robots by name), `server_client`
 (requests to a running server), `terminal` (progress bars and tables), `exit_codes`.
 """

@@ -1,11 +1,13 @@
 """`hexapods bench`: run the benchmarks; figures are ratios of times measured in the same run."""
 
-import argparse
 import json
 from collections.abc import Callable
+from typing import Annotated
+
+from cyclopts import Parameter
 
 from app.cli import benchmarks
-from app.cli.options import CommandParser
+from app.cli.options import AsJson
 from app.cli.terminal import progress, show_table
 
 TITLES = {
@@ -33,15 +35,10 @@ LIMITS = {
 }
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser("bench", help="run the benchmarks", description=__doc__)
-    parser.add_argument("--json", action="store_true", help="print the figures as one object")
-    parser.set_defaults(run=run)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Run all benchmarks once, in about a minute, and print the figures."""
+def bench(
+    *, as_json: Annotated[AsJson, Parameter(help="print the figures as one object")] = False
+) -> int:
+    """Run the benchmarks, in about a minute; figures are ratios of times of the same run."""
     steps: tuple[Callable[[], dict[str, float]], ...] = (
         benchmarks.training,
         benchmarks.look_ahead,
@@ -54,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         for measure in steps:
             figures |= measure()
             bar.advance(task)
-    if options.json:
+    if as_json:
         print(json.dumps(figures))
     else:
         rows = [

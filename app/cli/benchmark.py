@@ -1,105 +1,115 @@
-"""`hexapods benchmark`: score an agent by a frozen protocol; `hexapods verify` repeats the file.
+"""`hexapods benchmark`: score an agent by a frozen protocol."""
 
-Each run is a training from scratch, whose policy then walks 50 steps from rest without exploring or
-learning; its score is the share of the best known walk. The exit code is 1 if a run failed; it
-counts as 0. See docs/benchmark.md.
-"""
-
-import argparse
 import signal
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter, Token
 
 from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.files import check_writable
-from app.cli.options import CommandParser, add_observation, integer, settings_from, split
+from app.cli.options import AsJson, WholeNumber, Workers, whole_number
+from app.cli.setting_options import AgentOptions, split
 from app.cli.terminal import RATE_WINDOW_S, discard, progress, show_table, workers_text
 from hexapods.benchmarking.config import benchmark_config
-from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED, PROTOCOLS, protocol
+from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED, PROTOCOLS
+from hexapods.benchmarking.protocol import protocol as protocol_of
 from hexapods.benchmarking.score_file import HEAD, encode
 from hexapods.benchmarks import Benchmark, run_benchmark
+from hexapods.domain.observation import Observation
 from hexapods.domain.text import counted, visible
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.interruption import stop_signals
+from hexapods.runs.config import usable_agents
 
-_USUAL = protocol(DEFAULT_PROTOCOL)
+_USUAL = protocol_of(DEFAULT_PROTOCOL)
 _MAX_ERRORS = 5
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser(
-        "benchmark", help="score an agent by a frozen protocol", description=__doc__
-    )
-    parser.offers_settings = parser.takes_agent_first = True
+def _numbers(_: Any, tokens: Sequence[Token]) -> tuple[int, ...]:
+    return tuple(map(whole_number, split(tokens[0].value)))
+
+
+def benchmark(
+    agent: Annotated[
+        str,
+        Parameter(
+            name="AGENT",
+            completer=lambda _: usable_agents(),
+            help="registered name, or my.module:Agent",
+        ),
+    ],
+    /,
+    *,
+    protocol: Annotated[
+        str, Parameter(completer=lambda _: PROTOCOLS, help=" or ".join(PROTOCOLS))
+    ] = DEFAULT_PROTOCOL,
+    tasks: Annotated[
+        str | None,
+        Parameter(
+            metavar="LIST",
+            help=f"for a short one, one or more of {', '.join(_USUAL.tasks)} (default all)",
+        ),
+    ] = None,
+    budgets: Annotated[
+        tuple[int, ...] | None,
+        Parameter(
+            name="--budget",
+            metavar="LIST",
+            converter=_numbers,
+            n_tokens=1,
+            help="numbers of steps of practice "
+            f"(default {','.join(map(str, _USUAL.budgets))}); for agents that learn",
+        ),
+    ] = None,
+    seeds: Annotated[
+        WholeNumber | None,
+        Parameter(help=f"seeds of each task and number of steps (default {_USUAL.seeds})"),
+    ] = None,
+    seed: Annotated[
+        WholeNumber,
+        Parameter(help="root seed; another one draws other bodies, damages and robots as built"),
+    ] = PLAIN_SEED,
+    observation: Annotated[
+        Observation, Parameter(help="how the agent reads the state")
+    ] = "measured",
+    workers: Workers = None,
+    out: Annotated[
+        Path | None,
+        Parameter(
+            metavar="FILE",
+            help="score file; until all is done runs are kept in FILE.runs, and the same command "
+            "goes on from there; runs of this agent that FILE has already are not repeated",
+        ),
+    ] = None,
+    as_json: Annotated[AsJson, Parameter(help="print the content of the score file")] = False,
     # mcts has a setting that is called like the option of the benchmark.
-    parser.setting_flags = {"budget": "--search-budget"}
-    parser.add_argument("agent", metavar="AGENT", help="registered name, or my.module:Agent")
-    parser.add_argument(
-        "--protocol",
-        default=DEFAULT_PROTOCOL,
-        help=f"{' or '.join(PROTOCOLS)} (default {DEFAULT_PROTOCOL})",
-    )
-    parser.add_argument(
-        "--tasks",
-        metavar="LIST",
-        help=f"for a short one, one or more of {', '.join(_USUAL.tasks)} (default all)",
-    )
-    parser.add_argument(
-        "--budget",
-        dest="budgets",
-        metavar="LIST",
-        type=lambda text: tuple(integer(part) for part in split(text)),
-        help="numbers of steps of practice "
-        f"(default {','.join(map(str, _USUAL.budgets))}); for agents that learn",
-    )
-    parser.add_argument(
-        "--seeds",
-        type=integer,
-        help=f"seeds of each task and number of steps (default {_USUAL.seeds})",
-    )
-    parser.add_argument(
-        "--seed",
-        type=integer,
-        default=PLAIN_SEED,
-        help="root seed; another one draws other bodies, damages and robots as built (default 0)",
-    )
-    add_observation(parser, "how the agent reads the state")
-    parser.add_argument(
-        "--workers", type=integer, help="worker processes on this machine (default: one per core)"
-    )
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=Path,
-        help="score file; until all is done runs are kept in FILE.runs, and the same command goes "
-        "on from there; runs of this agent that FILE has already are not repeated",
-    )
-    parser.add_argument("--json", action="store_true", help="print the content of the score file")
-    parser.set_defaults(run=run)
+    **settings: Annotated[Any, AgentOptions(is_argument=True, flags={"budget": "--search-budget"})],
+) -> int:
+    """Score an agent by a frozen protocol; `hexapods verify` repeats the file.
 
-
-def run(options: argparse.Namespace) -> int:
-    """Run the benchmark, or what is left of it, print the scores, and write the file.
+    Each run is a training from scratch, whose policy then walks 50 steps from rest without
+    exploring or learning; its score is the share of the best known walk. The exit code is 1 if a
+    run failed; it counts as 0. See docs/benchmark.md.
 
     Raises:
         HexapodError: if the options are not valid, or the file cannot be written.
     """
     config = benchmark_config(
-        options.agent,
-        settings_from(options),
-        protocol_name=options.protocol,
-        tasks=None if options.tasks is None else split(options.tasks),
-        budgets=options.budgets,
-        seeds=options.seeds,
-        seed=options.seed,
-        observation=options.observation,
+        agent,
+        settings,
+        protocol_name=protocol,
+        tasks=None if tasks is None else split(tasks),
+        budgets=budgets,
+        seeds=seeds,
+        seed=seed,
+        observation=observation,
     )
-    spec, out = ClusterSpec(workers=options.workers), options.out
+    spec = ClusterSpec(workers=workers)
     if out is not None:
         check_writable(str(out))
-    print_line = discard if options.json else print
+    print_line = discard if as_json else print
     total = len(config.tasks) * len(config.budgets) * config.seeds
     print_line(f"{counted(total, 'run')} of {config.protocol} {workers_text(spec)}")
     try:
@@ -119,7 +129,7 @@ def run(options: argparse.Namespace) -> int:
         kept = "nothing is kept without --out" if out is None else "the same command goes on"
         print_line(f"\nInterrupted; {kept}.")
         return INTERRUPTED
-    if options.json:
+    if as_json:
         print(encode(done.content).decode(), end="")
     else:
         _print_scores(done)

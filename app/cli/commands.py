@@ -2,33 +2,41 @@
 
 A feature names its commands in a module `app/features/NAME/commands.py`, and another package in a
 module of its own, which an entry point of the group `hexapods.commands` gives with the feature's
-name: `COMMANDS` has by command the module with its `add_to`. `VERBS`, if it is there, has by
-command of the core the modules whose `add_to` adds verbs to it; `VERIFIERS` has modules with a
-`VERIFIER`, by which `hexapods verify` repeats another kind of file. Neither imports anything else,
-since each command of the core would wait for it.
+name: `COMMANDS` has by command the path `module:function` of its function, whose signature
+declares its options (`app.cli.program`). `VERBS`, if it is there, has by command of the core the
+paths of functions that add verbs to its App; `VERIFIERS` has the paths of `Verifier`s, by which
+`hexapods verify` repeats another kind of file. The module imports nothing else, since each command
+of the core would wait for it.
 """
 
+import importlib
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from app.feature_modules import feature_modules
 from app.settings import read_without
 from hexapods.domain.errors import InvalidInput
 
 CORE_COMMANDS: Mapping[str, str] = {
-    name: f"app.cli.{name.replace('-', '_')}"
-    for name in (*("serve", "train", "race", "benchmark", "runs", "verify", "doctor", "bench"),)
+    name: f"app.cli.{name}:{name}"
+    for name in ("serve", "train", "race", "benchmark", "runs", "verify", "doctor", "bench")
 }
 GROUP = "hexapods.commands"
 """Entry-point group of commands of features of other packages."""
 
 
-def command_modules(
+def load(path: str) -> Any:
+    """Import what a path names: `module:attribute`."""
+    module, _, attribute = path.partition(":")
+    return getattr(importlib.import_module(module), attribute)
+
+
+def command_paths(
     name: str | None = None, environ: Mapping[str, str] = os.environ
 ) -> dict[str, str]:
-    """Return the modules of all commands by name, or of one command alone.
+    """Return the paths of all commands by name, or of one command alone.
 
     Importing those of all takes twice the time in which most commands start.
 
@@ -43,7 +51,7 @@ def command_modules(
     if name is not None and name in CORE_COMMANDS:
         return {name: CORE_COMMANDS[name]}
     without = read_without(environ)
-    modules = dict(CORE_COMMANDS)
+    paths = dict(CORE_COMMANDS)
     for feature, commands, *_ in _added(without):
         if feature in without:
             if name in commands:
@@ -52,17 +60,17 @@ def command_modules(
                     "leaves out"
                 )
             continue
-        if twice := sorted(commands.keys() & modules.keys()):
+        if twice := sorted(commands.keys() & paths.keys()):
             raise InvalidInput(
                 f"the feature {feature} has the command {twice[0]}, which is there already; leave "
                 f"{feature} out by HEXAPODS_WITHOUT"
             )
-        modules |= commands
-    return modules if name is None or name not in modules else {name: modules[name]}
+        paths |= commands
+    return paths if name is None or name not in paths else {name: paths[name]}
 
 
-def verb_modules(command: str, environ: Mapping[str, str] = os.environ) -> list[str]:
-    """Return the modules of the verbs that features add to a command of the core.
+def verb_paths(command: str, environ: Mapping[str, str] = os.environ) -> list[str]:
+    """Return the paths of the functions that add verbs of features to a command of the core.
 
     Args:
         command: the command.
@@ -73,15 +81,15 @@ def verb_modules(command: str, environ: Mapping[str, str] = os.environ) -> list[
     """
     without = read_without(environ)
     return [
-        module
+        path
         for feature, _, verbs, _ in _added(without)
         if feature not in without
-        for module in verbs.get(command, ())
+        for path in verbs.get(command, ())
     ]
 
 
-def verifier_modules(environ: Mapping[str, str] = os.environ) -> list[str]:
-    """Return the modules of the kinds of files that features let `hexapods verify` repeat.
+def verifier_paths(environ: Mapping[str, str] = os.environ) -> list[str]:
+    """Return the paths of the `Verifier`s of features.
 
     Args:
         environ: environment, of which HEXAPODS_WITHOUT leaves features out.
@@ -91,15 +99,15 @@ def verifier_modules(environ: Mapping[str, str] = os.environ) -> list[str]:
     """
     without = read_without(environ)
     return [
-        module
+        path
         for added in _added(without)
         if added.feature not in without
-        for module in added.verifiers
+        for path in added.verifiers
     ]
 
 
 class _Added(NamedTuple):
-    """What a feature adds: its name, and the modules of its commands, verbs and verifiers."""
+    """What a feature adds: its name, and the paths of its commands, verbs and verifiers."""
 
     feature: str
     commands: Mapping[str, str]

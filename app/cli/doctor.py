@@ -1,35 +1,25 @@
 """`hexapods doctor`: check this machine and say what to do; changes nothing."""
 
-import argparse
 import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
 from app.cli import machine_checks
-from app.cli.options import CommandParser
-from app.cli.stored_runs import add_data
+from app.cli.options import AsJson, Data
 from app.settings import read_settings
 from hexapods.domain.errors import HexapodError
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser("doctor", help="check this machine", description=__doc__)
-    add_data(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.set_defaults(run=run)
-
-
-def run(options: argparse.Namespace) -> int:
-    """Run all checks; return 0 if all pass, else 1."""
+def doctor(*, data: Data = None, as_json: AsJson = False) -> int:
+    """Check this machine and say what to do; the exit code is 1 if a check fails."""
     results = []
-    for result in examine(options.data):
+    for result in examine(data):
         results.append(result)
-        if not options.json:
+        if not as_json:
             print(f"{'✓' if result.ok else '✗'} {result.name}: {result.said}", flush=True)
     ok = all(result.ok for result in results)
-    if options.json:
+    if as_json:
         print(json.dumps({"ok": ok, "checks": [result._asdict() for result in results]}))
     return 0 if ok else 1
 

@@ -1,39 +1,101 @@
-"""The program `hexapods`: the parser of its commands, and how one is run."""
+"""The program `hexapods`: its commands by their functions' signatures, and how one is run.
 
-import argparse
+A command is a function that returns an exit code: its signature declares arguments and options,
+and its docstring is shown by `--help`. A function that returns an `App` makes a command of several
+verbs, or one whose help depends on what is installed.
+"""
+
 import gc
-import importlib
+import inspect
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
-from app.cli.commands import command_modules
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+
+from app.cli.commands import command_paths, load
 from app.cli.exit_codes import INTERRUPTED
-from app.cli.options import CommandParser
 from app.cli.robot_names import stored_robots_known
+from app.cli.setting_options import with_options
 from hexapods.domain.errors import HexapodError
 from hexapods.version import __version__
+
+_HELP = ("--help", "-h")
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command that the arguments name, and return its exit code; see `app.cli.main`."""
+    name = "hexapods"
     try:
         with without_garbage_collection():
-            parser = parser_of(arguments)
-    except HexapodError as error:
-        print(f"hexapods: {error}", file=sys.stderr)
+            program = program_of(arguments)
+            chain, apps, _ = program.parse_commands(arguments)
+            name = " ".join(("hexapods", *chain[:1]))
+            command, bound, _ = program.parse_args(
+                arguments, console=_Output(), exit_on_error=False, print_error=False
+            )
+            if command == program.help_print and not {*_HELP} & {*arguments}:
+                verbs = [verb for verb in apps[-1] if not verb.startswith("-")]
+                raise CycloptsError(msg=f"name a command: {', '.join(verbs)}")
+    except (CycloptsError, HexapodError) as error:
+        print(f"{name}: {error}", file=sys.stderr)
         return 2
-    options = parser.parse_args(arguments)
     try:
-        with stored_robots_known(vars(options).get("data")):
-            code: int = options.run(options)
+        with stored_robots_known(bound.arguments.get("data")):
+            code: int | None = command(*bound.args, **bound.kwargs)
     except HexapodError as error:
-        print(f"hexapods {options.command}: {error}", file=sys.stderr)
+        print(f"{name}: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
-    return code
+    return code or 0
+
+
+def program_of(arguments: Sequence[str] | None = None) -> App:
+    """Return the program with the command that the arguments begin with, or else with all.
+
+    Importing all of them takes twice the time in which most commands start.
+
+    Args:
+        arguments: of the command line, which may name agents; None for all commands and all agents.
+
+    Raises:
+        InvalidInput: as `command_paths`.
+    """
+    program = App(
+        name="hexapods",
+        help="Six-legged robots that learn to walk, and race against look-ahead search.",
+        version=f"hexapods {__version__}",
+        help_flags=_HELP,
+        help_format="plaintext",
+        default_parameter=Parameter(negative=(), allow_repeating=True, show_default=_shown),
+    )
+    first, *words = arguments or (None,)
+    for name, path in command_paths(first).items():
+        function = load(path)
+        if inspect.signature(function).return_annotation is App:
+            program.command(function(), name=name)
+        else:
+            shown = words if name == first else None
+            program.command(with_options(function, shown), name=name)
+    program.register_install_completion_command(help="Install completion in the shell.")
+    return program
+
+
+def _shown(default: Any) -> str | None:
+    """Return the text of a default in `--help`; None for those that say nothing."""
+    return None if default is None or default is False or default == () else str(default)
+
+
+class _Output(Console):
+    """Standard output; `app.cli.main` ends the program if its reader has gone."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise what the console would end the program for, with another exit code."""
+        raise BrokenPipeError
 
 
 @contextmanager
@@ -51,21 +113,3 @@ def without_garbage_collection() -> Iterator[None]:
         gc.freeze()
         if was_enabled:
             gc.enable()
-
-
-def parser_of(arguments: Sequence[str] = ()) -> argparse.ArgumentParser:
-    """Return the parser of the command that the arguments begin with, or else of all commands.
-
-    Importing all of them takes twice the time in which most commands start.
-    """
-    parser = argparse.ArgumentParser(
-        prog="hexapods",
-        description="Six-legged robots that learn to walk, and race against look-ahead search.",
-    )
-    parser.add_argument("--version", action="version", version=f"hexapods {__version__}")
-    commands = parser.add_subparsers(
-        dest="command", required=True, metavar="COMMAND", parser_class=CommandParser
-    )
-    for module in command_modules(arguments[0] if arguments else None).values():
-        importlib.import_module(module).add_to(commands)
-    return parser

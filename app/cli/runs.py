@@ -4,24 +4,24 @@ Reading never disturbs the server. Changes go through the running server; withou
 command makes them itself.
 """
 
-import argparse
-import importlib
 import json
 import sys
 from collections.abc import Mapping
 from datetime import datetime
-from typing import cast
+from typing import Annotated, cast
 from urllib.parse import quote
 
-from app.cli.commands import verb_modules
-from app.cli.options import CommandParser, integer
+from cyclopts import App, Parameter
+
+from app.cli.commands import load, verb_paths
+from app.cli.options import AsJson, Data, RunId, WholeNumber
 from app.cli.server_client import call_server
-from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading, open_for_writing
+from app.cli.stored_runs import find_run, open_for_reading, open_for_writing
 from app.cli.terminal import show_lanes, show_table
 from app.events.run_view import run_view
 from app.settings import read_settings
 from app.storage.json_text import json_text
-from app.storage.run import SORTS, STATES, AnyRun, DamagedRun, Run, Sort
+from app.storage.run import SORTS, AnyRun, DamagedRun, Run, Sort, State
 from app.storage.run_kind import WALKS, added_kind, run_kinds
 from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
@@ -39,49 +39,45 @@ _TITLES: Mapping[Sort, str] = {
 _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser("runs", help="list, show and delete runs", description=__doc__)
-    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    listing = verbs.add_parser("list", help="list runs")
-    listing.add_argument("--kind", choices=tuple(run_kinds()), help="only runs of this kind")
-    listing.add_argument("--state", choices=STATES, help="only runs in this state")
-    listing.add_argument("--tag", help="only runs with this tag")
-    listing.add_argument(
-        "--search", help="only runs with this text in their name, id, tags or notes"
-    )
-    listing.add_argument(
-        "--sort", choices=SORTS, default=SORTS[0], help=f"order (default {SORTS[0]})"
-    )
-    listing.add_argument(
-        "--limit", type=integer, default=_LIMIT, help=f"at most so many (default {_LIMIT})"
-    )
-    showing = verbs.add_parser("show", help="show one run in full")
-    deleting = verbs.add_parser("delete", help="delete an ended run and all its files")
-    for verb, run in ((listing, _list), (showing, _show), (deleting, _delete)):
-        verb.set_defaults(run=run)
-        add_data(verb)
-        verb.add_argument("--json", action="store_true", help="print JSON")
-    for verb in (showing, deleting):
-        add_run(verb)
-    for module in verb_modules("runs"):
-        importlib.import_module(module).add_to(verbs)
+def runs() -> App:
+    """Return the command with its verbs, also those that features add."""
+    app = App(help="List, show and delete runs, with or without a running server.")
+    for name, verb in (("list", _list), ("show", _show), ("delete", _delete)):
+        app.command(verb, name=name)
+    for path in verb_paths("runs"):
+        load(path)(app)
+    return app
 
 
-def _list(options: argparse.Namespace) -> int:
-    if options.limit < 1:
-        raise InvalidInput(f"--limit must be at least 1, not {options.limit}")
-
-    with open_for_reading(read_settings(data=options.data)) as store:
+def _list(
+    *,
+    kind: Annotated[
+        str | None, Parameter(choices=tuple(run_kinds()), help="only runs of this kind")
+    ] = None,
+    state: Annotated[State | None, Parameter(help="only runs in this state")] = None,
+    tag: Annotated[str | None, Parameter(help="only runs with this tag")] = None,
+    search: Annotated[
+        str | None,
+        Parameter(help="only runs with this text in their name, id, tags or notes"),
+    ] = None,
+    sort: Annotated[Sort, Parameter(help="order")] = SORTS[0],
+    limit: Annotated[WholeNumber, Parameter(help="at most so many")] = _LIMIT,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """List runs."""
+    if limit < 1:
+        raise InvalidInput(f"--limit must be at least 1, not {limit}")
+    with open_for_reading(read_settings(data=data)) as store:
         page = store.list(
-            options.kind,
-            options.state,
-            options.limit,
-            search=options.search,
-            tag=options.tag,
-            sort=options.sort,
+            kind,
+            state,
+            limit,
+            search=search,
+            tag=tag,
+            sort=sort,
         )
-    if options.json:
+    if as_json:
         items = [run_view(run) for run in page.items]
         print(json_text({"items": items, "next_cursor": page.next_cursor}))
         return 0
@@ -90,11 +86,11 @@ def _list(options: argparse.Namespace) -> int:
         return 0
     rows = [_row(run) for run in page.items]
     if sys.stdout.isatty():
-        show_table(_TITLES[options.sort], _HEAD, rows, text=(1, 2, 4, 6))
+        show_table(_TITLES[sort], _HEAD, rows, text=(1, 2, 4, 6))
     else:
         print("\n".join("\t".join(row) for row in rows))
     if page.next_cursor is not None:
-        print(f"There are more; --limit {2 * options.limit} shows more of them.")
+        print(f"There are more; --limit {2 * limit} shows more of them.")
     return 0
 
 
@@ -124,12 +120,13 @@ def _outcome(run: Run) -> str:
     return "" if kind is None or result is None else kind.outcome(result)
 
 
-def _show(options: argparse.Namespace) -> int:
-    with open_for_reading(read_settings(data=options.data)) as store:
-        run = find_run(store, options.run_id)
+def _show(run_id: RunId, /, *, data: Data = None, as_json: AsJson = False) -> int:
+    """Show one run in full."""
+    with open_for_reading(read_settings(data=data)) as store:
+        run = find_run(store, run_id)
         curve = store.curves.get(run.id)
     view = run_view(run)
-    if options.json:
+    if as_json:
         print(json_text({**view, "curve": list(curve)}))
         return 0
     if "damaged" in view:
@@ -152,13 +149,14 @@ def _show(options: argparse.Namespace) -> int:
     return 0
 
 
-def _delete(options: argparse.Namespace) -> int:
+def _delete(run_id: RunId, /, *, data: Data = None, as_json: AsJson = False) -> int:
+    """Delete an ended run and all its files."""
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415
 
-    settings = read_settings(data=options.data)
+    settings = read_settings(data=data)
     # Look the run up first: an unknown id needs no lock and no server.
     with open_for_reading(settings) as reader:
-        run = find_run(reader, options.run_id)
+        run = find_run(reader, run_id)
     try:
         with open_for_writing(settings) as store:
             store.delete(run.id)
@@ -166,5 +164,5 @@ def _delete(options: argparse.Namespace) -> int:
         kind = run.kind or WALKS[0]
         call_server(settings, "DELETE", f"api/v1/{kind}s/{quote(run.id, safe='')}")
     message = f"Deleted {run.kind or 'run'} {run.id}."
-    print(json.dumps({"deleted": run.id}) if options.json else message)
+    print(json.dumps({"deleted": run.id}) if as_json else message)
     return 0

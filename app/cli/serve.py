@@ -1,19 +1,21 @@
 """`hexapods serve`: serve the dashboard, the API and the stage at one address."""
 
-import argparse
+import inspect
 import os
 import secrets
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from dataclasses import fields
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
-from app.cli.options import CommandParser, integer
+from cyclopts import Parameter
+
+from app.cli.options import Data, WholeNumber
 from app.cli.program import without_garbage_collection
-from app.feature_settings import FeatureSettings, installed_settings
+from app.feature_settings import installed_settings
 from app.setting_fields import Switch, kind_of
 from app.settings import (
     Settings,
@@ -28,70 +30,72 @@ THREADS_END_S = 2.0
 """Time for threads to end that still compute for requests once everything else has ended."""
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser("serve", help="serve the dashboard", description=__doc__)
-    parser.add_argument("--host", help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")
-    parser.add_argument(
-        "--port", type=integer, help="port to bind (default 8000, or HEXAPODS_PORT)"
-    )
-    parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
-    parser.add_argument(
-        "--share",
-        action="store_true",
-        help="let the local network watch: bind every address, make a token if none is set, "
-        "print the links",
-    )
-    for name, switch in _switches_with_options():
-        parser.add_argument(
-            f"--{name.replace('_', '-')}", action="store_true", default=None, help=switch.option
-        )
-    parser.set_defaults(run=run)
+@dataclass(frozen=True)
+class _SwitchOptions:
+    """An option for each setting of a feature that `hexapods serve` can turn on."""
+
+    def parameters(self, words: Sequence[str] | None) -> Iterator[inspect.Parameter]:
+        """Yield the parameters of the options."""
+        del words
+        for settings in installed_settings(read_without()):
+            for declared in fields(settings):
+                kind = kind_of(declared)
+                if isinstance(kind, Switch) and kind.option is not None:
+                    yield inspect.Parameter(
+                        declared.name,
+                        inspect.Parameter.KEYWORD_ONLY,
+                        default=False,
+                        annotation=Annotated[bool, Parameter(help=kind.option)],
+                    )
 
 
-def run(options: argparse.Namespace) -> int:
-    """Serve until stopped.
+def serve(
+    *,
+    host: Annotated[
+        str | None, Parameter(help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")
+    ] = None,
+    port: Annotated[
+        WholeNumber | None, Parameter(help="port to bind (default 8000, or HEXAPODS_PORT)")
+    ] = None,
+    data: Data = None,
+    share: Annotated[
+        bool,
+        Parameter(
+            help="let the local network watch: bind every address, make a token if none is set, "
+            "print the links"
+        ),
+    ] = False,
+    **switches: Annotated[bool, _SwitchOptions()],
+) -> int:
+    """Serve the dashboard, the API and the stage at one address, until stopped.
 
     Raises:
         InvalidInput: if the server cannot start with these options.
     """
-    given: dict[str, Any] = {"host": options.host, "port": options.port, "data": options.data}
-    if options.share:
-        given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
+    given: dict[str, Any] = {"host": host, "port": port, "data": data}
+    if share:
+        given["host"] = host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
-    given |= {name: getattr(options, name) for name, _ in _switches_with_options()}
+    given |= switches
     of_features = read_feature_settings(**given)
     # Of a token of the environment no link is printed unless it is asked for: it would be in a log.
-    shows_links = options.share or any(
-        settings.audience and _is_by_option(settings, options) for settings in of_features
+    shows_links = share or any(
+        settings.audience and any(switches.get(declared.name) for declared in fields(settings))
+        for settings in of_features
     )
     needs_token = any(settings.needs_token for settings in of_features)
     if needs_token and "token" not in given and read_token() is None:
-        host = options.host or os.environ.get("HEXAPODS_HOST") or Settings.host
-        if is_loopback(host):
+        bound = host or os.environ.get("HEXAPODS_HOST") or Settings.host
+        if is_loopback(bound):
             given["token"], shows_links = secrets.token_urlsafe(24), True
     settings = read_settings(**given)
     remove_secrets()  # no process that is started from here on needs them
     with without_garbage_collection():
-        from app.server import serve  # noqa: PLC0415 - its imports take most of a second
+        from app import server  # noqa: PLC0415 - its imports take most of a second
     # A link that is opened before the server answers looks broken.
-    serve(settings, on_ready=partial(show_links, settings) if shows_links else None)
+    server.serve(settings, on_ready=partial(show_links, settings) if shows_links else None)
     _end_with_threads()
     return 0
-
-
-def _switches_with_options() -> Iterator[tuple[str, Switch]]:
-    """Yield by name the settings of features that an option turns on."""
-    for settings in installed_settings(read_without()):
-        for declared in fields(settings):
-            kind = kind_of(declared)
-            if isinstance(kind, Switch) and kind.option is not None:
-                yield declared.name, kind
-
-
-def _is_by_option(settings: FeatureSettings, options: argparse.Namespace) -> bool:
-    """Whether an option of the command has turned on one of these settings."""
-    return any(getattr(options, declared.name, None) for declared in fields(settings))
 
 
 def _end_with_threads() -> None:

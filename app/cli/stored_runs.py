@@ -1,6 +1,5 @@
-"""Options and functions of the commands that read runs from a data folder."""
+"""Functions of the commands that read runs from a data folder."""
 
-import argparse
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING
@@ -12,18 +11,6 @@ from hexapods.domain.errors import InvalidInput
 
 if TYPE_CHECKING:
     from app.storage.database.store import RunStore
-
-
-def add_data(parser: argparse.ArgumentParser) -> None:
-    """Add `--data`, the data folder."""
-    parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
-
-
-def add_run(parser: argparse.ArgumentParser) -> None:
-    """Add the argument that names a run."""
-    parser.add_argument(
-        "run_id", metavar="RUN", help="id of the run, as listed by `hexapods runs list`"
-    )
 
 
 def find_run(store: "RunStore", run_id: str) -> AnyRun:

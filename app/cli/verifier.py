@@ -1,9 +1,29 @@
 """A kind of file that `hexapods verify` repeats, of the core or of a feature."""
 
-import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from app.cli.options import AsJson, WholeNumber, Workers
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class VerifyOptions:
+    """Options of `hexapods verify`, beside the file."""
+
+    sample: Annotated[
+        WholeNumber | None,
+        Parameter(
+            metavar="RUNS",
+            help="of a benchmark, repeat only so many runs (default: all); scores are always "
+            "computed again",
+        ),
+    ] = None
+    workers: Workers = None
+    as_json: Annotated[AsJson, Parameter(help="print standings and differences")] = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,9 +37,9 @@ class Verifier:
         docs: what tells of it, such as `docs/benchmark.md`.
         recognizes: whether the content of a file, an object of JSON, says that it is of this kind;
             it may be damaged.
-        verify: repeats the content of a file by the command's options (`file`, `workers`, `sample`
-            and `json`), prints its result and what differs, and returns the exit code; raises a
-            HexapodError if it cannot be read or repeated.
+        verify: repeats a file by its content, its path and the command's options, prints its
+            result and what differs, and returns the exit code; raises a HexapodError if it cannot
+            be read or repeated.
     """
 
     thing: str
@@ -27,4 +47,4 @@ class Verifier:
     origin: str
     docs: str
     recognizes: Callable[[Mapping[str, Any]], bool]
-    verify: Callable[[bytes, argparse.Namespace], int]
+    verify: Callable[[bytes, str, VerifyOptions], int]

@@ -1,11 +1,10 @@
 """The part of `hexapods verify` that repeats score files of `hexapods benchmark`."""
 
-import argparse
 import json
 
 from app.cli.exit_codes import FAILED
 from app.cli.terminal import progress
-from app.cli.verifier import Verifier
+from app.cli.verifier import Verifier, VerifyOptions
 from hexapods.benchmarking.score_file import HEAD, decode, row_of
 from hexapods.benchmarking.verification import verification, version_note
 from hexapods.domain.text import counted
@@ -13,8 +12,8 @@ from hexapods.domain.text import counted
 _MAX_TOLD = 20
 
 
-def _verify(data: bytes, options: argparse.Namespace) -> int:
-    content = decode(data, options.file)
+def _verify(data: bytes, file: str, options: VerifyOptions) -> int:
+    content = decode(data, file)
     with progress("runs") as bar:
         task = bar.add_task("repeating", total=None)
         outcome = verification(
@@ -26,7 +25,7 @@ def _verify(data: bytes, options: argparse.Namespace) -> int:
     note, differences = version_note(content), outcome.differences
     is_rounded = bool(differences) and outcome.is_rounding and note is not None
     repeats = not differences
-    if options.json:
+    if options.as_json:
         shown = {
             "protocol": content["protocol"],
             "agent": content["agent"],
@@ -48,11 +47,11 @@ def _verify(data: bytes, options: argparse.Namespace) -> int:
         print(note)
     count = counted(outcome.repeated, "run")
     if repeats:
-        print(f"{options.file} repeats to the last digit: {count}, and all scores.")
+        print(f"{file} repeats to the last digit: {count}, and all scores.")
     elif is_rounded:
-        print(f"{options.file} repeats but for last digits: {count}, and all scores.")
+        print(f"{file} repeats but for last digits: {count}, and all scores.")
     else:
-        print(f"{options.file} does not repeat: see the differences above.")
+        print(f"{file} does not repeat: see the differences above.")
     return 0 if repeats or is_rounded else FAILED
 
 

@@ -114,7 +114,7 @@ def test_options_list_its_settings(client: httpx2.Client) -> None:
 @pytest.mark.parametrize("command", ["train", pytest.param("sweep", marks=only_whole)])
 def test_the_command_line_has_options_for_its_settings(command: str) -> None:
     said = subprocess.run(
-        [sys.executable, "-m", "app.cli", command, "--help"],
+        [sys.executable, "-m", "app.cli", command, "--agent", "wanderer", "--help"],
         capture_output=True,
         text=True,
         check=True,

@@ -149,9 +149,13 @@ def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
         (("q-learning", "--tasks", "moon"), "unknown task of hexabench-1 'moon'; choose one of: "),
         (("q-learning", "--tasks", "ice,ice"), "tasks names something twice"),
         (("q-learning", "--protocol", "x"), "unknown protocol 'x'; choose one of: hexabench-1"),
-        (("linear-model", "--objective", "average"), "unknown setting of linear-model 'objective'"),
+        (
+            ("linear-model", "--objective", "average"),
+            "--objective is no setting of linear-model, which has --prior, --optimism, --order; it "
+            "is one of q-learning, double-q, ",
+        ),
         (("greedy", "--budget", "100"), "greedy does not learn, so it has no budgets"),
-        (("q-learning", "--observation", "seen"), "choose one of: "),
+        (("q-learning", "--observation", "seen"), 'Choose from: "measured", '),
         (("q-learning", "--out", "none/s.json"), "cannot write none/s.json"),
     ],
 )

@@ -187,8 +187,8 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--robot", '{"femur_m": -1}'), "robot.femur_m must be from"),
         ((*GAIT, "--robot", '{"n_legs": 13}'), "3 to 12 legs"),
         ((*GAIT, "--robot", "missing.toml"), "missing.toml"),
-        ((*GAIT, "--simulator", "matrix"), "mujoco, kinematic"),
-        ((*GAIT, "--observation", "guessed"), "measured, commanded"),
+        ((*GAIT, "--simulator", "matrix"), '"mujoco", "kinematic"'),
+        ((*GAIT, "--observation", "guessed"), '"measured", "commanded", "planned"'),
         (
             (*GAIT, "--agent", "skynet"),
             "linear-model, greedy, two-step, look-ahead, ",
@@ -214,7 +214,7 @@ def test_invalid_input_to_train_is_refused_in_one_sentence(
         (("--gait", "front-back-origin", "--lane", "q-learning=q.npz"), "gait left-right-origin"),
         ((*QUICK, "--divisions", "3", "--lane", "q-learning=q.npz"), "divisions 2"),
         ((*QUICK, *(["--lane", "greedy"] * 7)), "1 to 6 lanes"),
-        ((*QUICK, "--lane", "greedy", "--clock", "cuckoo"), "paper, wall, free"),
+        ((*QUICK, "--lane", "greedy", "--clock", "cuckoo"), '"paper", "wall", "free"'),
         ((*QUICK, "--lane", "look-ahead,depth=0"), "depth must be a whole number from 1 to 50"),
         *(
             (

@@ -8,7 +8,7 @@ import shlex
 
 import pytest
 
-from app.cli.program import parser_of
+from app.cli.program import program_of
 from tests.cli.running import ROOT
 
 _PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -34,5 +34,7 @@ def test_a_documented_command_is_valid(command: str) -> None:
     # What follows is of the shell: other commands, and a variable of the page.
     hexapods_command = re.split(r" [|>] ", command.replace("$agents", "q-learning"))[0]
     words = shlex.split(hexapods_command, comments=True)[1:]
-    options = parser_of(words).parse_args(words)
-    assert options.command == words[0]
+    program = program_of(words)
+    function, bound, _ = program.parse_args(words, print_error=False, exit_on_error=False)
+    assert program.parse_commands(words)[0][0] == words[0]
+    assert bound.arguments or function != program.help_print

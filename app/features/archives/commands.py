@@ -3,6 +3,6 @@
 from collections.abc import Mapping
 
 COMMANDS: Mapping[str, str] = {
-    "export": "app.features.archives.export_command",
-    "import": "app.features.archives.import_command",
+    "export": "app.features.archives.export_command:export_runs",
+    "import": "app.features.archives.import_command:import_archive",
 }

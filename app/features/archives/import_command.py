@@ -1,44 +1,39 @@
-"""`hexapods import`: import the runs of an archive that `hexapods export` wrote.
+"""`hexapods import`: import the runs of an archive that `hexapods export` wrote."""
 
-Nothing of the file is believed before it is checked; see docs/operations.md.
-"""
-
-import argparse
 import json
-from typing import Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter
 
 from app.cli.files import read_bounded
-from app.cli.options import CommandParser
+from app.cli.options import AsJson, Data
 from app.cli.server_client import call_server
-from app.cli.stored_runs import add_data, open_for_writing
+from app.cli.stored_runs import open_for_writing
 from app.features.archives.archive import MAX_BYTES
 from app.settings import Settings, read_settings
 from hexapods.runs.config import usable_agents
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser("import", help="import runs from an archive", description=__doc__)
-    parser.add_argument("file", metavar="RUN.ZIP", help="archive written by `hexapods export`")
-    add_data(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.set_defaults(run=run)
+def import_archive(
+    file: Annotated[str, Parameter(name="RUN.ZIP", help="archive written by `hexapods export`")],
+    /,
+    *,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Import the runs of an archive that `hexapods export` wrote, all or none.
 
-
-def run(options: argparse.Namespace) -> int:
-    """Import the runs of an archive, all or none.
+    Nothing of the file is believed before it is checked; see docs/operations.md.
 
     Raises:
         HexapodError: if the file is not a valid archive, or a run cannot be stored.
     """
-    views = _import(
-        read_settings(data=options.data), read_bounded(options.file, MAX_BYTES), options.file
-    )
-    if options.json:
+    views = _import(read_settings(data=data), read_bounded(file, MAX_BYTES), file)
+    if as_json:
         print(json.dumps(views[0] if len(views) == 1 else {"items": views}))
         return 0
     for view in views:
-        print(f"{options.file} is {view['kind']} {view['id']} here, {view['name']!r}.")
+        print(f"{file} is {view['kind']} {view['id']} here, {view['name']!r}.")
     return 0
 
 

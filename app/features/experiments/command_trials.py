@@ -1,6 +1,5 @@
 """Runs the trials of an experiment with a progress bar, stores them, and writes the report."""
 
-import argparse
 import json
 import signal
 from collections.abc import Callable, Iterator, Mapping
@@ -10,6 +9,7 @@ from typing import Any
 
 from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.terminal import RATE_WINDOW_S, discard, progress, show_table, workers_text
+from app.features.experiments.trial_options import ExecutionOptions
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import REPORT, ExperimentConfig
@@ -23,25 +23,23 @@ STOPPING = (signal.SIGINT, signal.SIGTERM)
 _HEAD = ("setting", "seeds", "total m", "95\u00a0%")
 
 
-def run_experiment(
-    config: ExperimentConfig, cluster: ClusterSpec, options: argparse.Namespace
-) -> int:
+def run_experiment(config: ExperimentConfig, execution: ExecutionOptions) -> int:
     """Run the remaining trials of an experiment, write the report, and return the exit code.
 
     It is 1 if a trial failed, now or before, and 130 if it was interrupted.
 
     Args:
         config: config of the experiment.
-        cluster: workers of this machine, or a Dask cluster.
-        options: options of the command line: `out`, `retry` and `json`.
+        execution: options for workers or cluster, results folder and output.
 
     Raises:
         HexapodError: if the experiment cannot be run or completed; finished trials are stored.
     """
-    path: Path = options.out or Path(f"{config.experiment}-results")
-    print_line = discard if options.json else print
+    cluster = execution.cluster()
+    path = execution.out or Path(f"{config.experiment}-results")
+    print_line = discard if execution.as_json else print
     with open_results(path, config) as folder:
-        total, remaining = folder.plan.total, folder.remaining(options.retry)
+        total, remaining = folder.plan.total, folder.remaining(execution.retry)
         done = total - len(remaining)
         before = f"; {done:,} are there already" if done else ""
         print_line(f"{total:,} trials {workers_text(cluster)}, kept in {path}{before}")
@@ -54,7 +52,7 @@ def run_experiment(
             )
             return INTERRUPTED
         summary = _report(cluster, folder)
-    if options.json:
+    if execution.as_json:
         print(json.dumps(summary))
     else:
         _print_summary(summary, path)

@@ -3,5 +3,5 @@
 from collections.abc import Mapping
 
 COMMANDS: Mapping[str, str] = {
-    name: f"app.features.experiments.{name}_command" for name in ("experiment", "sweep")
+    name: f"app.features.experiments.{name}_command:{name}" for name in ("experiment", "sweep")
 }

@@ -1,15 +1,13 @@
 """`hexapods experiment`: the paper's experiments and others, over many seeds."""
 
-import argparse
+from dataclasses import dataclass
+from typing import Annotated, Any
 
-from app.cli.options import CommandParser, parser_of, split
+from cyclopts import Parameter
+
+from app.cli.setting_options import reads, split
 from app.features.experiments.command_trials import run_experiment
-from app.features.experiments.trial_options import (
-    add_machine_options,
-    add_trial_options,
-    cluster_from,
-    trial_grid_from,
-)
+from app.features.experiments.trial_options import ExecutionOptions, TrialOptions
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import WORLDS
@@ -18,99 +16,98 @@ from hexapods.experiments.formatting import listed
 from hexapods.experiments.presets import PRESETS
 from hexapods.runs.config import TrainingConfig
 
-
-def _names() -> list[str]:
-    """Return the presets that this command starts; others have a command of their own."""
-    return [name for name, preset in PRESETS.items() if preset.command == f"experiment {name}"]
-
-
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser(
-        "experiment", help="repeat experiments over many seeds", description=__doc__
-    )
-    parser.add_argument("experiment", choices=_names(), help=listed(_names(), "or"))
-    add_trial_options(
-        parser, observations="both", robots="stiff,compliant for table1, stiff for figure4"
-    )
-    parser.add_argument(
-        "--agent",
-        action="append",
-        help="agents to compare (learners; in a league also searches); repeat, or separate by "
-        "commas",
-    )
-    parser.add_argument(
-        "--world",
-        action="append",
-        metavar="WORLD",
-        help=f"one or more of {', '.join(WORLDS)}, or a disturbance such as limp:legs=1,4",
-    )
-    settings = declared_fields(TrainingConfig)
-    parser.add_argument(
-        "--tolerance",
-        type=parser_of(settings["tolerance"]),
-        help="build tolerance of the robots (league, recovery), as a fraction (default 0.03)",
-    )
-    parser.add_argument(
-        "--reward",
-        type=parser_of(settings["reward"]),
-        help=f"{settings['reward'].about.help} Of all but the paper's.",
-    )
-    parser.add_argument(
-        "--steps",
-        type=lambda text: tuple(parser_of(settings["steps"])(part) for part in split(text)),
-        metavar="LIST",
-        help="steps of practice: in a league in all (default 250), in a recovery before the "
-        "disturbance (default 100)",
-    )
-    add_machine_options(parser)
-    parser.set_defaults(run=run)
+_NAMES = [name for name, preset in PRESETS.items() if preset.command == f"experiment {name}"]
+"""The presets that this command starts; others have a command of their own."""
+_SETTINGS = declared_fields(TrainingConfig)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Run the experiment, or resume it from its results folder.
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class WorldOptions:
+    """Options that some experiments take."""
+
+    world: Annotated[
+        tuple[str, ...],
+        Parameter(
+            completer=lambda _: [*WORLDS],
+            help=f"one or more of {', '.join(WORLDS)}, or a disturbance such as limp:legs=1,4",
+        ),
+    ] = ()
+    tolerance: Annotated[
+        float | None,
+        Parameter(
+            converter=reads(_SETTINGS["tolerance"]),
+            help="build tolerance of the robots (league, recovery), as a fraction (default 0.03)",
+        ),
+    ] = None
+    reward: Annotated[
+        str | None,
+        Parameter(
+            converter=reads(_SETTINGS["reward"]),
+            help=f"{_SETTINGS['reward'].about.help} Of all but the paper's.",
+        ),
+    ] = None
+    steps: Annotated[
+        tuple[int, ...] | None,
+        Parameter(
+            converter=reads(_SETTINGS["steps"], lists=True),
+            n_tokens=1,
+            metavar="LIST",
+            help="steps of practice: in a league in all (default 250), in a recovery before the "
+            "disturbance (default 100)",
+        ),
+    ] = None
+
+    def fields(self) -> dict[str, Any]:
+        """Return fields of an experiment; None where nothing is given."""
+        return {
+            "worlds": self._worlds(),
+            "tolerance": self.tolerance,
+            "reward": self.reward,
+            "steps": self.steps,
+        }
+
+    def _worlds(self) -> tuple[str, ...] | None:
+        """Return the worlds, separated by commas; a disturbance may have commas too."""
+        worlds: list[str] = []
+        for entry in (entry for text in self.world for entry in split(text)):
+            # Names of worlds and kinds begin with a letter, so a number belongs to a list of legs.
+            if worlds and ":" in worlds[-1] and entry[:1].isdecimal():
+                worlds[-1] += f",{entry}"
+            else:
+                worlds.append(entry)
+        return tuple(worlds) or None
+
+
+_TRIALS, _WORLDS, _EXECUTION = TrialOptions(), WorldOptions(), ExecutionOptions()
+
+
+def experiment(
+    experiment: Annotated[str, Parameter(name="EXPERIMENT", choices=_NAMES, help="which")],
+    /,
+    *,
+    trials: TrialOptions = _TRIALS,
+    worlds: WorldOptions = _WORLDS,
+    execution: ExecutionOptions = _EXECUTION,
+) -> int:
+    """Repeat an experiment over many seeds, or go on with it from its results folder.
 
     Raises:
         HexapodError: if the options are not valid.
     """
-    return run_experiment(config_from(options), cluster_from(options), options)
+    return run_experiment(config_of(experiment, trials, worlds), execution)
 
 
-def config_from(options: argparse.Namespace) -> ExperimentConfig:
-    """Return the experiment that the options ask for.
+def config_of(experiment: str, trials: TrialOptions, worlds: WorldOptions) -> ExperimentConfig:
+    """Return the experiment of some options.
 
     Raises:
         HexapodError: if the options are not valid.
     """
-    given = {
-        "agents": agents_from(options.agent),
-        "worlds": _worlds_from(options.world),
-        "tolerance": options.tolerance,
-        "steps": options.steps,
-        "reward": options.reward,
-    }
-    for field, value in given.items():
-        takers = [name for name in _names() if field in PRESETS[name].fields]
-        if value is not None and options.experiment not in takers:
+    grid, special = trials.fields(), worlds.fields()
+    for field, value in {**special, "agents": grid["agents"]}.items():
+        takers = [name for name in _NAMES if field in PRESETS[name].fields]
+        if value is not None and experiment not in takers:
             option = ExperimentConfig.option_of(field)
-            raise InvalidInput(f"{option} is for {listed(takers)}, not {options.experiment}")
-    return experiment_config(options.experiment, {**trial_grid_from(options), **given})
-
-
-def _worlds_from(texts: list[str] | None) -> tuple[str, ...] | None:
-    """Return the worlds of `--world`, separated by commas; what happens may have commas too."""
-    if texts is None:
-        return None
-    worlds: list[str] = []
-    for part in (part for text in texts for part in split(text)):
-        # Names of worlds and kinds begin with a letter, so a number belongs to a list of legs.
-        if worlds and ":" in worlds[-1] and part[:1].isdecimal():
-            worlds[-1] += f",{part}"
-        else:
-            worlds.append(part)
-    return tuple(worlds)
-
-
-def agents_from(texts: list[str] | None) -> tuple[str, ...] | None:
-    """Parse the agents named by `--agent`; None without the option."""
-    return None if texts is None else tuple(agent for text in texts for agent in split(text))
+            raise InvalidInput(f"{option} is for {listed(takers)}, not {experiment}")
+    return experiment_config(experiment, {**grid, **special})

@@ -1,108 +1,135 @@
 """Options of experiments and sweeps: trial grid, machines, results folder."""
 
-import argparse
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
-from app.cli.options import integer, read_gait, read_robot, split
+from cyclopts import Parameter
+
+from app.cli.options import AsJson, WholeNumber, Workers, read_gait, read_robot
+from app.cli.setting_options import split
 from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS, GaitSpec
 from hexapods.domain.observation import OBSERVATIONS, PAPER_OBSERVATIONS
 from hexapods.domain.robot import PRESETS, Robot
 from hexapods.experiments.cluster import ClusterSpec
-from hexapods.runs.config import SIMULATORS
+from hexapods.runs.config import SimulatorName, usable_agents
 
 T = TypeVar("T")
 
 
-def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots: str) -> None:
-    """Add the options of a trial grid that `experiment` and `sweep` share.
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class TrialOptions:
+    """Options of a trial grid; the experiment's defaults hold for those that are not given."""
 
-    Args:
-        parser: parser of the command.
-        observations: default observations, for the help text.
-        robots: default robots, for the help text.
-    """
-    parser.add_argument("--seeds", type=integer, help="number of seeds per learner (default 30)")
-    parser.add_argument(
-        "--seed",
-        type=integer,
-        help="root seed from which all others are spawned (default 0)",
+    agent: Annotated[
+        tuple[str, ...],
+        Parameter(
+            completer=lambda _: usable_agents(),
+            help="agents to compare, or my.module:Agent; repeat, or separate by commas",
+        ),
+    ] = ()
+    seeds: Annotated[
+        WholeNumber | None, Parameter(help="number of seeds per learner (default 30)")
+    ] = None
+    seed: Annotated[
+        WholeNumber | None,
+        Parameter(help="root seed from which all others are spawned (default 0)"),
+    ] = None
+    gait: Annotated[
+        tuple[str, ...],
+        Parameter(
+            completer=lambda _: [*NAMED_GAITS],
+            help="all (the paper's four, default), one or more of "
+            f"{', '.join(NAMED_GAITS)}, or JSON",
+        ),
+    ] = ()
+    observation: Annotated[
+        tuple[str, ...],
+        Parameter(
+            completer=lambda _: OBSERVATIONS,
+            help=f"both (the paper's two), all, or one or more of {', '.join(OBSERVATIONS)} "
+            "(default both in experiments, measured in sweeps)",
+        ),
+    ] = ()
+    robot: Annotated[
+        tuple[str, ...],
+        Parameter(
+            completer=lambda _: [*PRESETS],
+            help=f"one or more of {', '.join(PRESETS)}, a stored one, a TOML file, or JSON "
+            "(default stiff; stiff,compliant for table1)",
+        ),
+    ] = ()
+    simulator: Annotated[SimulatorName | None, Parameter(help="simulator (default mujoco)")] = None
+
+    def fields(self) -> dict[str, Any]:
+        """Return fields of an experiment; None where nothing is given.
+
+        Raises:
+            HexapodError: if a gait or robot is not valid.
+        """
+        return {
+            "agents": _join_values(self.agent, split),
+            "seeds": self.seeds,
+            "seed": self.seed,
+            "simulator": self.simulator,
+            "gaits": _join_values(self.gait, _gaits),
+            "observations": _join_values(self.observation, _observations),
+            "robots": _join_values(self.robot, _robots),
+        }
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class ExecutionOptions:
+    """Options for workers or cluster, results folder and output."""
+
+    workers: Workers = None
+    scheduler: Annotated[
+        str | None,
+        Parameter(
+            metavar="ADDRESS", help="scheduler of a Dask cluster, tcp://HOST:PORT or tls://…"
+        ),
+    ] = None
+    tls_ca: Annotated[str | None, Parameter(metavar="PEM", help="CA, for a tls:// scheduler")] = (
+        None
     )
-    parser.add_argument(
-        "--gait",
-        action="append",
-        help=f"all (the paper's four, default), one or more of {', '.join(NAMED_GAITS)}, or JSON",
+    tls_cert: Annotated[
+        str | None, Parameter(metavar="PEM", help="client certificate, for a tls:// scheduler")
+    ] = None
+    tls_key: Annotated[
+        str | None,
+        Parameter(metavar="PEM", help="key of the client certificate, for a tls:// scheduler"),
+    ] = None
+    out: Annotated[Path | None, Parameter(metavar="DIR", help="folder for results and report")] = (
+        None
     )
-    parser.add_argument(
-        "--observation",
-        action="append",
-        help=f"both (the paper's two), all, or one or more of {', '.join(OBSERVATIONS)} "
-        f"(default {observations})",
+    retry: Annotated[bool, Parameter(help="also retry trials that an earlier run set aside")] = (
+        False
     )
-    parser.add_argument(
-        "--robot",
-        action="append",
-        help=f"one or more of {', '.join(PRESETS)}, a stored one, a TOML file, or JSON "
-        f"(default {robots})",
-    )
-    parser.add_argument(
-        "--simulator", help=f"simulator: {' or '.join(SIMULATORS)} (default mujoco)"
-    )
+    as_json: Annotated[AsJson, Parameter(help="print the summary as JSON")] = False
+
+    def cluster(self) -> ClusterSpec:
+        """Return the specification of the workers or the cluster."""
+        return ClusterSpec(
+            workers=self.workers,
+            scheduler=self.scheduler,
+            tls_ca=self.tls_ca,
+            tls_cert=self.tls_cert,
+            tls_key=self.tls_key,
+        )
 
 
-def add_machine_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for workers or cluster, results folder and output."""
-    parser.add_argument(
-        "--workers", type=integer, help="worker processes on this machine (default: one per core)"
-    )
-    parser.add_argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="scheduler of a Dask cluster, tcp://HOST:PORT or tls://…",
-    )
-    for name, what in (
-        ("ca", "CA"),
-        ("cert", "client certificate"),
-        ("key", "key of the client certificate"),
-    ):
-        parser.add_argument(f"--tls-{name}", metavar="PEM", help=f"{what}, for a tls:// scheduler")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and report")
-    parser.add_argument(
-        "--retry", action="store_true", help="also retry trials that an earlier run set aside"
-    )
-    parser.add_argument("--json", action="store_true", help="print the summary as JSON")
-
-
-def cluster_from(options: argparse.Namespace) -> ClusterSpec:
-    """Build the cluster's specification from `add_machine_options`."""
-    names = ("workers", "scheduler", "tls_ca", "tls_cert", "tls_key")
-    return ClusterSpec(**{name: getattr(options, name) for name in names})
-
-
-def trial_grid_from(options: argparse.Namespace) -> dict[str, Any]:
-    """Convert options of `add_trial_options` to fields of an experiment; None where not given."""
-    return {
-        "seeds": options.seeds,
-        "seed": options.seed,
-        "simulator": options.simulator,
-        "gaits": _join_values(options.gait, _gaits),
-        "observations": _join_values(options.observation, _observations),
-        "robots": _join_values(options.robot, _robots),
-    }
-
-
-def _join_values(
-    texts: Sequence[str] | None, read: Callable[[str], Sequence[T]]
-) -> tuple[T, ...] | None:
-    """Join the values of an option that may be repeated."""
-    return None if texts is None else tuple(value for text in texts for value in read(text))
+def _join_values(texts: Sequence[str], read: Callable[[str], Sequence[T]]) -> tuple[T, ...] | None:
+    """Join the values of an option that may be repeated; None without any."""
+    return tuple(value for text in texts for value in read(text)) if texts else None
 
 
 def _gaits(text: str) -> Sequence[str | GaitSpec]:
     if text == "all":
         return list(PAPER_GAITS)
-    return [read_gait(part) for part in _parts(text)]
+    return [read_gait(entry) for entry in _entries(text)]
 
 
 def _observations(text: str) -> Sequence[str]:
@@ -111,8 +138,8 @@ def _observations(text: str) -> Sequence[str]:
 
 
 def _robots(text: str) -> Sequence[Robot]:
-    return [read_robot(part) for part in _parts(text)]
+    return [read_robot(entry) for entry in _entries(text)]
 
 
-def _parts(text: str) -> list[str]:
+def _entries(text: str) -> list[str]:
     return [text] if text.lstrip().startswith("{") else split(text)

@@ -4,5 +4,8 @@ from collections.abc import Mapping, Sequence
 
 COMMANDS: Mapping[str, str] = {}
 VERBS: Mapping[str, Sequence[str]] = {
-    "runs": ("app.features.exports.file_commands", "app.features.exports.servos_command")
+    "runs": (
+        "app.features.exports.file_commands:add_to",
+        "app.features.exports.servos_command:add_to",
+    )
 }

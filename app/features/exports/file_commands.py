@@ -1,58 +1,77 @@
 """Verbs of `hexapods runs` that write a run's walk to a file, one for each export format."""
 
-import argparse
 import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import App, Parameter
 
 from app.cli.files import check_writable, size_text, write_whole
-from app.cli.options import CommandParser, add_settings
-from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
+from app.cli.options import AsJson, Data, RunId
+from app.cli.setting_options import DeclaredOptions, with_options
+from app.cli.stored_runs import find_run, open_for_reading
 from app.settings import read_settings
+from app.storage.run import Run
 from hexapods.domain.errors import InvalidInput
 from hexapods.exports.export_format import IN_PROCESS, EncodedReplay, ExportFormat, as_bytes
 from hexapods.exports.registry import EXPORTS
 from hexapods.runs.clocks import Clock
 
 
-def add_to(verbs: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the parsers of the verbs."""
+def add_to(verbs: App) -> None:
+    """Add the verbs."""
     for name, export in EXPORTS.items():
-        _add(verbs, name, export)
+        verbs.command(
+            with_options(_verb(export)), name=name, help=f"Export {export.title} of a run."
+        )
 
 
-def _add(
-    verbs: "argparse._SubParsersAction[CommandParser]", name: str, export: ExportFormat
-) -> None:
-    parser = verbs.add_parser(name, help=f"export {export.title}")
-    add_run(parser)
+def _verb(export: ExportFormat) -> Callable[..., int]:
+    """Return the verb that writes files of a format."""
     endings = " or ".join(f".{ending}" for ending in export.endings)
-    parser.add_argument(
-        "--out",
-        required=True,
-        metavar=f"FILE.{export.endings[0]}",
-        help=f"file to write, ending with {endings}",
-    )
-    add_data(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    add_settings(parser, export.settings, flags=export.flags)
-    parser.set_defaults(run=lambda options: _write(options, export))
+
+    def write_file(
+        run_id: RunId,
+        /,
+        *,
+        out: Annotated[
+            str,
+            Parameter(
+                metavar=f"FILE.{export.endings[0]}", help=f"file to write, ending with {endings}"
+            ),
+        ],
+        data: Data = None,
+        as_json: AsJson = False,
+        **settings: Annotated[Any, DeclaredOptions(export.settings, flags=export.flags)],
+    ) -> int:
+        run, size = _write(export, run_id, Path(out), settings, data)
+        if as_json:
+            print(json.dumps({"id": run.id, "file": out, "bytes": size}))
+        else:
+            print(f"{run.kind.capitalize()} {run.id} is in {out} ({size_text(size)}).")
+        return 0
+
+    return write_file
 
 
-def _write(given: argparse.Namespace, export: ExportFormat) -> int:
-    """Write the file; works beside a running server."""
+def _write(
+    export: ExportFormat, run_id: str, out: Path, settings: Mapping[str, Any], data: str | None
+) -> tuple[Run, int]:
+    """Write the file; return the run and the file's size. Works beside a running server."""
     # Imported here, as these modules would slow the start of other commands.
     from app.features.exports.stored_walks import source_of  # noqa: PLC0415
     from app.stage.playback import Replays  # noqa: PLC0415
     from app.storage.recordings import Recordings  # noqa: PLC0415
 
     try:
-        file = export.file(Path(given.out).suffix.removeprefix("."))
+        file = export.file(out.suffix.removeprefix("."))
     except InvalidInput as error:
-        raise InvalidInput(f"{error}: {given.out}") from error
-    options = export.options(**{name: getattr(given, name) for name in export.settings})
-    check_writable(given.out)
-    with open_for_reading(read_settings(data=given.data)) as store:
-        run = store.get(find_run(store, given.run_id).id)
+        raise InvalidInput(f"{error}: {out}") from error
+    options = export.options(**settings)
+    check_writable(str(out))
+    with open_for_reading(read_settings(data=data)) as store:
+        run = store.get(find_run(store, run_id).id)
         recordings = Recordings(store)
 
         def encode(run_id: str, clock: Clock) -> EncodedReplay:
@@ -61,10 +80,6 @@ def _write(given: argparse.Namespace, export: ExportFormat) -> int:
             return ReplayFrames(Replays(store, recordings)).encoded(run_id, clock)
 
         source = source_of(run, recordings, encode)
-        data = b"".join(as_bytes(export.write(source, file, options, IN_PROCESS)))
-    write_whole(given.out, data)
-    if given.json:
-        print(json.dumps({"id": run.id, "file": given.out, "bytes": len(data)}))
-    else:
-        print(f"{run.kind.capitalize()} {run.id} is in {given.out} ({size_text(len(data))}).")
-    return 0
+        content = b"".join(as_bytes(export.write(source, file, options, IN_PROCESS)))
+    write_whole(str(out), content)
+    return run, len(content)

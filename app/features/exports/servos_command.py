@@ -1,16 +1,14 @@
-"""`hexapods runs servos`: a run's walk for the servos of a real robot.
+"""`hexapods runs servos`: a run's walk for the servos of a real robot."""
 
-A servo map says where each servo is connected, and its pulse for an angle. What the servos cannot
-follow at their speed is told, and how much slower they could.
-"""
-
-import argparse
 import json
 from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
 
 from app.cli.files import check_writable, size_text, write_whole
-from app.cli.options import CommandParser, integer
-from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
+from app.cli.options import AsJson, Data, RunId, WholeNumber
+from app.cli.stored_runs import find_run, open_for_reading
 from app.settings import read_settings
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
@@ -19,35 +17,41 @@ from hexapods.exports.servo_map import BUILT_IN_MAPS
 from hexapods.exports.servo_walk import FRAME_S, ServoSpeed, ServoWalk, servo_walk
 
 
-def add_to(verbs: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the parser of the verb."""
-    parser = verbs.add_parser(
-        "servos", help="export pulses for the servos of a real robot", description=__doc__
-    )
-    add_run(parser)
-    parser.add_argument(
-        "--map",
-        required=True,
-        metavar="FILE",
-        help=f"servo map: a YAML file, or {' or '.join(BUILT_IN_MAPS)}",
-    )
-    endings = " or ".join(f".{ending}" for ending in SERVO_FILES)
-    parser.add_argument(
-        "--out", required=True, metavar="FILE.csv", help=f"file to write, ending with {endings}"
-    )
-    parser.add_argument(
-        "--lane", type=integer, default=0, help="lane of a race, from 0 on (default 0)"
-    )
-    parser.add_argument(
-        "--slow-down", action="store_true", help="scale time so that all servos can follow"
-    )
-    add_data(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.set_defaults(run=write_servos)
+def add_to(verbs: App) -> None:
+    """Add the verb."""
+    verbs.command(servos)
 
 
-def write_servos(given: argparse.Namespace) -> int:
-    """Write the file; works beside a running server.
+def servos(
+    run_id: RunId,
+    /,
+    *,
+    servo_map: Annotated[
+        str,
+        Parameter(
+            name="--map",
+            metavar="FILE",
+            completer=lambda _: [*BUILT_IN_MAPS],
+            help=f"servo map: a YAML file, or {' or '.join(BUILT_IN_MAPS)}",
+        ),
+    ],
+    out: Annotated[
+        str,
+        Parameter(
+            metavar="FILE.csv",
+            help="file to write, ending with "
+            f"{' or '.join(f'.{ending}' for ending in SERVO_FILES)}",
+        ),
+    ],
+    lane: Annotated[WholeNumber, Parameter(help="lane of a race, from 0 on")] = 0,
+    slow_down: Annotated[bool, Parameter(help="scale time so that all servos can follow")] = False,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Export pulses for the servos of a real robot; works beside a running server.
+
+    A servo map says where each servo is connected, and its pulse for an angle. The command says
+    what the servos cannot follow at their speed, and how much slower they could.
 
     Raises:
         HexapodError: if the run, the map or the lane is not valid, a servo would get a pulse
@@ -58,62 +62,64 @@ def write_servos(given: argparse.Namespace) -> int:
     from app.storage.recordings import Recordings  # noqa: PLC0415
     from hexapods.exports.servo_map_file import load_servo_map  # noqa: PLC0415
 
-    ending = Path(given.out).suffix.removeprefix(".")
+    ending = Path(out).suffix.removeprefix(".")
     if ending not in SERVO_FILES:
-        valid = " or ".join(f".{one}" for one in SERVO_FILES)
-        raise InvalidInput(f"the name of the file must end with {valid}: {given.out}")
+        valid = " or ".join(f".{name}" for name in SERVO_FILES)
+        raise InvalidInput(f"the name of the file must end with {valid}: {out}")
     _, write = SERVO_FILES[ending]
-    check_writable(given.out)
-    with open_for_reading(read_settings(data=given.data)) as store:
-        run = store.get(find_run(store, given.run_id).id)
+    check_writable(out)
+    with open_for_reading(read_settings(data=data)) as store:
+        run = store.get(find_run(store, run_id).id)
         walks = recorded_walks(run, Recordings(store))
         joints = [joint.label for joint in legs_of(walks.problem.robot).joints]
-        servo_map = load_servo_map(given.map, joints)
-        walk = servo_walk(walks, servo_map, given.lane, slow_down=given.slow_down)
-    data = "".join(write(walk, run.name or f"{run.kind} {run.id}")).encode()
-    write_whole(given.out, data)
-    if given.json:
-        print(json.dumps({"id": run.id, "file": given.out, "bytes": len(data), **_as_json(walk)}))
+        pulses_of = load_servo_map(servo_map, joints)
+        walk = servo_walk(walks, pulses_of, lane, slow_down=slow_down)
+    content = "".join(write(walk, run.name or f"{run.kind} {run.id}")).encode()
+    write_whole(out, content)
+    if as_json:
+        print(json.dumps({"id": run.id, "file": out, "bytes": len(content), **_as_json(walk)}))
         return 0
     print(
         f"{run.kind.capitalize()} {run.id}, lane {walk.lane} ({walk.agent}), steps {walk.steps[0]} "
         f"to {walk.steps[1]}: {len(walk.pulses_us)} frames of {1000 * FRAME_S:g} ms, "
-        f"{walk.duration_s:.2f} s, are in {given.out} ({size_text(len(data))})."
+        f"{walk.duration_s:.2f} s, are in {out} ({size_text(len(content))})."
     )
     print("\n".join(speed_sentences(walk)))
     return 0
 
 
 def speed_sentences(walk: ServoWalk) -> list[str]:
-    """Tell which servos cannot follow, or what was done so that they can."""
-    known = [one for one in walk.speeds if one.usable_deg_s is not None]
-    if not known:
+    """Say which servos cannot follow, or what was done so that they can."""
+    limited = [speed for speed in walk.speeds if speed.usable_deg_s is not None]
+    if not limited:
         return ["The map has no speed_deg_s: whether the servos can follow is not known."]
-    told = []
-    if len(known) < len(walk.speeds):
-        unknown = [one.servo.joint for one in walk.speeds if one.usable_deg_s is None]
-        told.append(f"Of {', '.join(unknown)} the map has no speed_deg_s: they are not checked.")
+    sentences = []
+    if len(limited) < len(walk.speeds):
+        joints = [speed.servo.joint for speed in walk.speeds if speed.usable_deg_s is None]
+        sentences.append(
+            f"Of {', '.join(joints)} the map has no speed_deg_s: they are not checked."
+        )
     share = f"{100 * walk.map.speed_share:g} % of the no-load speed"
-    hardest = max(known, key=lambda one: one.times_slower)
+    hardest = max(limited, key=lambda speed: speed.times_slower)
     if walk.slowed > 1:
-        told.append(
+        sentences.append(
             f"Slowed down: it takes {walk.slowed:g} times as long as recorded, so that "
             f"{hardest.servo.joint} can follow, which needed {_need(hardest)}."
         )
     elif walk.too_slow:
         count = len(walk.too_slow)
-        servos = "1 servo cannot follow" if count == 1 else f"{count} servos cannot follow"
-        told.append(f"{servos} at {share}, which is counted on:")
-        told += [f"  {one.servo.title} needs {_need(one)}" for one in walk.too_slow]
-        told.append(
+        subject = "1 servo" if count == 1 else f"{count} servos"
+        sentences.append(f"{subject} cannot follow at {share}, which is counted on:")
+        sentences += [f"  {speed.servo.title} needs {_need(speed)}" for speed in walk.too_slow]
+        sentences.append(
             f"All can if it takes {walk.slow_enough:g} times as long: --slow-down does that."
         )
     else:
-        told.append(
+        sentences.append(
             f"The servos can follow at {share}; the fastest, {hardest.servo.joint}, needs "
             f"{_need(hardest)}."
         )
-    return told
+    return sentences
 
 
 def _need(speed: ServoSpeed) -> str:
@@ -131,11 +137,11 @@ def _as_json(walk: ServoWalk) -> dict[str, object]:
         "slow_enough": walk.slow_enough,
         "too_slow": [
             {
-                "joint": one.servo.joint,
-                "needed_deg_s": round(one.needed_deg_s, 1),
-                "usable_deg_s": one.usable_deg_s,
-                "at_s": round(one.at_s, 2),
+                "joint": speed.servo.joint,
+                "needed_deg_s": round(speed.needed_deg_s, 1),
+                "usable_deg_s": speed.usable_deg_s,
+                "at_s": round(speed.at_s, 2),
             }
-            for one in walk.too_slow
+            for speed in walk.too_slow
         ],
     }

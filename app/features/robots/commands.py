@@ -1,3 +1,3 @@
 """Names the command of stored robots; imports nothing, as each command would wait for it."""
 
-COMMANDS = {"robots": "app.features.robots.robots_command"}
+COMMANDS = {"robots": "app.features.robots.robots_command:robots"}

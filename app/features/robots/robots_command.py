@@ -1,14 +1,17 @@
 """`hexapods robots`: those built in and stored, what is known of one, and its model."""
 
-import argparse
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import App, Parameter
 
 from app.cli.files import check_writable, size_text, write_whole
-from app.cli.options import CommandParser, read_gait, read_robot
-from app.cli.stored_runs import add_data, open_for_reading
+from app.cli.options import AsJson, Data, Gait, read_gait, read_robot
+from app.cli.setting_options import reads
+from app.cli.stored_runs import open_for_reading
 from app.cli.terminal import show_table
 from app.features.robots import storing_commands
 from app.settings import read_settings
@@ -16,9 +19,9 @@ from hexapods.domain.creatures import CREATURES, Creature, own_gait
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json
 from hexapods.domain.gait import read_gait as read_gait_of
-from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS, Robot, as_mapping, document_of
+from hexapods.domain.settings import declared_fields
 from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 from hexapods.runs.preview import Preview, preview
@@ -27,70 +30,49 @@ if TYPE_CHECKING:
     from app.storage.stored_robot import StoredRobot
 
 
-def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    """Add the command's parser."""
-    parser = commands.add_parser(
-        "robots", help="list, examine and export robots", description=__doc__
-    )
-    verbs = parser.add_subparsers(
-        dest="verb", required=True, metavar="VERB", parser_class=CommandParser
-    )
-    listing = verbs.add_parser("list", help="list the robots that are built in, and stored ones")
-    listing.add_argument("--hidden", action="store_true", help="list hidden ones, too")
-    add_data(listing)
-    listing.add_argument("--json", action="store_true", help="print JSON")
-    listing.set_defaults(run=list_robots)
-    showing = verbs.add_parser(
-        "show", help="tell support, reach, number of states and speed before anything runs"
-    )
-    showing.add_argument(
-        "--gait", help=f"gait: {', '.join(NAMED_GAITS)}, or JSON (default: the robot's own)"
-    )
-    showing.add_argument("--divisions", type=int, default=FootGrid.divisions)
-    showing.add_argument(
-        "--grid-side-m", type=float, help="side of the foot grid (default: one that suits its size)"
-    )
-    showing.add_argument("--json", action="store_true", help="print JSON")
-    showing.set_defaults(run=show_robot)
-    exporting = verbs.add_parser(
-        "export",
-        help="write a robot as MJCF, which MuJoCo opens without other files, or as the document "
-        "that `hexapods robots import` stores elsewhere",
-    )
-    exporting.add_argument(
-        "--out", required=True, metavar="FILE", help="file to write: .xml for MJCF, or .json"
-    )
-    exporting.add_argument("--json", action="store_true", help="print JSON")
-    exporting.set_defaults(run=export_robot)
-    for verb in (showing, exporting):
-        add_data(verb)
-        verb.add_argument(
-            "robot",
-            metavar="NAME",
-            help=f"{', '.join(PRESETS)}, a stored one's name or id, a TOML file, or JSON",
-        )
-    storing_commands.add_to(verbs)
+_GRID = declared_fields(WalkingProblem)
+_ROBOT_HELP = f"{', '.join(PRESETS)}, a stored one's name or id, a TOML file, or JSON"
+RobotName = Annotated[str, Parameter(name="NAME", completer=lambda _: [*PRESETS], help=_ROBOT_HELP)]
 
 
-def list_robots(options: argparse.Namespace) -> int:
-    """Print the robots, each with a gait that suits it."""
-    robots = [*map(_built_in, CREATURES.values())]
+def robots() -> App:
+    """Return the command with its verbs."""
+    app = App(help="List, examine, store and export robots.")
+    verbs: dict[str, Callable[..., int]] = {
+        "list": list_robots,
+        "show": show_robot,
+        "export": export_robot,
+        **storing_commands.VERBS,
+    }
+    for name, verb in verbs.items():
+        app.command(verb, name=name)
+    return app
+
+
+def list_robots(
+    *,
+    hidden: Annotated[bool, Parameter(help="list hidden ones, too")] = False,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """List the robots that are built in, and stored ones, each with a gait that suits it."""
+    listed = [*map(_built_in, CREATURES.values())]
     try:
-        with open_for_reading(read_settings(data=options.data)) as store:
-            robots += map(_stored, store.robots.readable(hidden=options.hidden))
+        with open_for_reading(read_settings(data=data)) as store:
+            listed += map(_stored, store.robots.readable(hidden=hidden))
     except HexapodError as error:
         print(f"Stored robots cannot be read: {error}", file=sys.stderr)
-    if options.json:
-        print(json.dumps(robots))
+    if as_json:
+        print(json.dumps(listed))
         return 0
     rows = [
         (
-            one["title"] if one["id"] else one["name"],
-            one["legs"],
-            gait_text(read_gait_of(one["gait"])),
-            one["description"],
+            robot["title"] if robot["id"] else robot["name"],
+            robot["legs"],
+            gait_text(read_gait_of(robot["gait"])),
+            robot["description"],
         )
-        for one in robots
+        for robot in listed
     ]
     show_table("Robots", ("name", "legs", "gait", "description"), rows, text=(0, 2, 3))
     return 0
@@ -124,19 +106,39 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
     return {"legs": len(made.legs), "gait": gait_as_json(gait), "robot": as_mapping(made)}
 
 
-def show_robot(options: argparse.Namespace) -> int:
-    """Print what is known of a robot under a gait.
+def show_robot(
+    name: RobotName,
+    /,
+    *,
+    gait: Annotated[
+        Gait | None, Parameter(help=f"{', '.join(NAMED_GAITS)}, or JSON (default: its own)")
+    ] = None,
+    divisions: Annotated[
+        int, Parameter(converter=reads(_GRID["divisions"]), help=_GRID["divisions"].about.help)
+    ] = WalkingProblem.divisions,
+    grid_side_m: Annotated[
+        float | None,
+        Parameter(
+            converter=reads(_GRID["grid_side_m"]),
+            help="side of the foot grid (default: one that suits its size)",
+        ),
+    ] = None,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Show support, reach, number of states and speed of a robot before anything runs.
 
     Raises:
         HexapodError: if robot, gait or grid are not valid.
     """
-    made = read_robot(options.robot)
-    gait = own_gait(made) if options.gait is None else read_gait(options.gait)
-    side_m = usual_grid_side_m(made, gait) if options.grid_side_m is None else options.grid_side_m
-    walk = WalkingProblem(gait=gait, robot=made, divisions=options.divisions, grid_side_m=side_m)
-    known = preview(walk)
-    if options.json:
-        print(json.dumps({"robot": made.name, "gait": gait_as_json(gait), **to_json(known)}))
+    del data  # by it the program has found the folder of stored robots
+    robot = read_robot(name)
+    spec = own_gait(robot) if gait is None else read_gait(gait)
+    side_m = usual_grid_side_m(robot, spec) if grid_side_m is None else grid_side_m
+    walk = WalkingProblem(gait=spec, robot=robot, divisions=divisions, grid_side_m=side_m)
+    figures = preview(walk)
+    if as_json:
+        print(json.dumps({"robot": robot.name, "gait": gait_as_json(spec), **to_json(figures)}))
         return 0
     rows = [
         (
@@ -145,39 +147,49 @@ def show_robot(options: argparse.Namespace) -> int:
             "all" if group.back_m is None else _millimetres(group.back_m),
             "all" if group.ahead_m is None else _millimetres(group.ahead_m),
         )
-        for group in known.groups
+        for group in figures.groups
     ]
-    title = f"{made.name}, {gait_text(gait)}: {len(known.legs)} legs, {known.mass_kg:.2f} kg"
+    title = f"{robot.name}, {gait_text(spec)}: {len(figures.legs)} legs, {figures.mass_kg:.2f} kg"
     show_table(
         title, ("legs", "support margin, mm", "reach back, mm", "reach ahead, mm"), rows, text=(0,)
     )
-    print("\n".join(_sentences(known)))
+    print("\n".join(_sentences(figures)))
     return 0
 
 
-def export_robot(options: argparse.Namespace) -> int:
-    """Write a robot as a model for MuJoCo, or as a document.
+def export_robot(
+    name: RobotName,
+    /,
+    *,
+    out: Annotated[str, Parameter(metavar="FILE", help="file to write: .xml for MJCF, or .json")],
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Write a robot as a model that MuJoCo opens without other files, or as a document.
+
+    `hexapods robots import` stores the document elsewhere.
 
     Raises:
         HexapodError: if the robot is not valid, or the file cannot be written.
     """
+    del data  # by it the program has found the folder of stored robots
     # MuJoCo chooses how it reads a file by its ending.
-    ending = Path(options.out).suffix
+    ending = Path(out).suffix
     if ending not in (".xml", ".json"):
-        raise InvalidInput(f"the name of the file must end with .xml or .json: {options.out}")
-    made = read_robot(options.robot)
-    check_writable(options.out)
+        raise InvalidInput(f"the name of the file must end with .xml or .json: {out}")
+    robot = read_robot(name)
+    check_writable(out)
     if ending == ".json":
-        data, told = document_of(made), "`hexapods robots import` stores it elsewhere"
+        content, use = document_of(robot), "`hexapods robots import` stores it elsewhere"
     else:
         from hexapods.exports.robot_model import robot_mjcf  # noqa: PLC0415 - loads MuJoCo
 
-        data, told = robot_mjcf(made).encode(), "its keyframe `home` has it standing"
-    write_whole(options.out, data)
-    if options.json:
-        print(json.dumps({"robot": made.name, "file": options.out, "bytes": len(data)}))
+        content, use = robot_mjcf(robot).encode(), "its keyframe `home` has it standing"
+    write_whole(out, content)
+    if as_json:
+        print(json.dumps({"robot": robot.name, "file": out, "bytes": len(content)}))
     else:
-        print(f"{made.name} is in {options.out} ({size_text(len(data))}); {told}.")
+        print(f"{robot.name} is in {out} ({size_text(len(content))}); {use}.")
     return 0
 
 

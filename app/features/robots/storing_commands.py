@@ -3,17 +3,20 @@
 They go through the running server; without one, the command makes the changes itself.
 """
 
-import argparse
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import urlencode
 
+from cyclopts import Parameter
+
+from app.cli.files import read_bounded
+from app.cli.options import AsJson, Data
 from app.cli.server_client import call_server
-from app.cli.stored_runs import add_data, open_for_reading, open_for_writing
+from app.cli.stored_runs import open_for_reading, open_for_writing
 from app.settings import Settings, read_settings
-from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.errors import UnknownName
 
 if TYPE_CHECKING:
     from app.storage.database.store import RunStore
@@ -22,82 +25,97 @@ if TYPE_CHECKING:
 _MAX_BYTES = 64 << 20
 
 
-def add_to(verbs: "argparse._SubParsersAction[Any]") -> None:
-    """Add the verbs' parsers."""
-    importing = verbs.add_parser(
-        "import",
-        help="store a robot from MJCF or URDF, alone or in a zip, or from a document that "
-        "`hexapods robots export` wrote",
-    )
-    importing.add_argument(
-        "file", metavar="FILE", help="MJCF, URDF, a zip, a document, or JSON with `robot`"
-    )
-    importing.add_argument("--name", help="its name (default: that of the file)")
-    hiding = verbs.add_parser("hide", help="leave a stored robot out where robots are chosen")
-    hiding.add_argument("--undo", action="store_true", help="offer it again")
-    renaming = verbs.add_parser("rename", help="give a stored robot another name")
-    renaming.add_argument("--name", required=True, help="its new name")
-    deleting = verbs.add_parser("delete", help="delete a stored robot that no run uses")
-    for verb, run in (
-        (importing, _import),
-        (hiding, _hide),
-        (renaming, _rename),
-        (deleting, _delete),
-    ):
-        verb.set_defaults(run=run)
-        add_data(verb)
-        verb.add_argument("--json", action="store_true", help="print JSON")
-    for verb in (hiding, renaming, deleting):
-        verb.add_argument("robot", metavar="NAME", help="name or id of a stored robot")
+Name = Annotated[str, Parameter(name="NAME", help="name or id of a stored robot")]
 
 
-def _import(options: argparse.Namespace) -> int:
-    settings, path = read_settings(data=options.data), Path(options.file)
-    try:
-        with path.open("rb") as file:
-            data = file.read(_MAX_BYTES + 1)
-    except OSError as error:
-        raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
-    name = options.name or path.stem
+def import_robot(
+    file: Annotated[
+        str, Parameter(name="FILE", help="MJCF, URDF, a zip, a document, or JSON with `robot`")
+    ],
+    /,
+    *,
+    name: Annotated[str | None, Parameter(help="its name (default: that of the file)")] = None,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Store a robot from MJCF or URDF, alone or in a zip, or from a document.
+
+    `hexapods robots export` writes documents.
+
+    Raises:
+        HexapodError: if it cannot be read or stored.
+    """
+    settings, path = read_settings(data=data), Path(file)
+    content = read_bounded(file, _MAX_BYTES)
+    name = name or path.stem
 
     def store_it(store: "RunStore") -> "StoredRobot":
         # Imported here, as it loads the jobs.
-        from app.features.robots.robot_import import import_robot  # noqa: PLC0415
+        from app.features.robots import robot_import  # noqa: PLC0415
 
-        return import_robot(store, data, name, path.name)[0]
+        return robot_import.import_robot(store, content, name, path.name)[0]
 
     query = urlencode({"name": name, "file": path.name})
-    told = _changed(settings, store_it, ("POST", f"api/v1/robots?{query}", data))
-    lines = [f"{path} is robot {told['name']} ({told['id']}) here."]
-    lines += [f"Guessed: {one}" for one in told["guesses"]]
-    lines += [f"Repaired: {one}" for one in told["repairs"]]
-    return _print(options, told, "\n".join(lines))
+    view = _changed(settings, store_it, ("POST", f"api/v1/robots?{query}", content))
+    lines = [f"{path} is robot {view['name']} ({view['id']}) here."]
+    lines += [f"Guessed: {guess}" for guess in view["guesses"]]
+    lines += [f"Repaired: {repair}" for repair in view["repairs"]]
+    return _print(view, "\n".join(lines), as_json)
 
 
-def _hide(options: argparse.Namespace) -> int:
-    told = _change(options, hidden=not options.undo)
-    how = "is offered again" if options.undo else "is hidden"
-    return _print(options, told, f"{told['name']} {how}.")
+def hide_robot(
+    robot: Name,
+    /,
+    *,
+    undo: Annotated[bool, Parameter(help="offer it again")] = False,
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Leave a stored robot out where robots are chosen.
+
+    Raises:
+        HexapodError: if there is none of this name, or it cannot be changed.
+    """
+    view = _change(robot, data, hidden=not undo)
+    state = "is offered again" if undo else "is hidden"
+    return _print(view, f"{view['name']} {state}.", as_json)
 
 
-def _rename(options: argparse.Namespace) -> int:
-    told = _change(options, name=options.name)
-    return _print(options, told, f"It is {told['name']} now.")
+def rename_robot(
+    robot: Name,
+    /,
+    *,
+    name: Annotated[str, Parameter(help="its new name")],
+    data: Data = None,
+    as_json: AsJson = False,
+) -> int:
+    """Give a stored robot another name.
+
+    Raises:
+        HexapodError: if there is none of this name, or it cannot be changed.
+    """
+    view = _change(robot, data, name=name)
+    return _print(view, f"It is {view['name']} now.", as_json)
 
 
-def _change(options: argparse.Namespace, **changes: Any) -> dict[str, Any]:
-    settings = read_settings(data=options.data)
-    robot_id = find_stored(settings, options.robot).id
+def _change(robot: str, data: str | None, **changes: Any) -> dict[str, Any]:
+    settings = read_settings(data=data)
+    robot_id = find_stored(settings, robot).id
     request = ("PATCH", f"api/v1/robots/{robot_id}", json.dumps(changes).encode())
-    told: dict[str, Any] = _changed(
+    view: dict[str, Any] = _changed(
         settings, lambda store: store.robots.change(robot_id, **changes), request
     )
-    return told
+    return view
 
 
-def _delete(options: argparse.Namespace) -> int:
-    settings = read_settings(data=options.data)
-    found = find_stored(settings, options.robot)
+def delete_robot(robot: Name, /, *, data: Data = None, as_json: AsJson = False) -> int:
+    """Delete a stored robot that no run uses.
+
+    Raises:
+        HexapodError: if there is none of this name, or it cannot be deleted.
+    """
+    settings = read_settings(data=data)
+    stored = find_stored(settings, robot)
 
     def delete(store: "RunStore") -> None:
         # Imported here, as they load all features.
@@ -105,10 +123,18 @@ def _delete(options: argparse.Namespace) -> int:
         from app.installed_features import load  # noqa: PLC0415
 
         keep_named_robots(load(settings.without), store)
-        store.robots.delete(found.id)
+        store.robots.delete(stored.id)
 
-    _changed(settings, delete, ("DELETE", f"api/v1/robots/{found.id}", None))
-    return _print(options, {"deleted": found.id}, f"Deleted robot {found.name} ({found.id}).")
+    _changed(settings, delete, ("DELETE", f"api/v1/robots/{stored.id}", None))
+    return _print({"deleted": stored.id}, f"Deleted robot {stored.name} ({stored.id}).", as_json)
+
+
+VERBS: Mapping[str, Callable[..., int]] = {
+    "import": import_robot,
+    "hide": hide_robot,
+    "rename": rename_robot,
+    "delete": delete_robot,
+}
 
 
 def find_stored(settings: Settings, text: str) -> "StoredRobot":
@@ -118,11 +144,11 @@ def find_stored(settings: Settings, text: str) -> "StoredRobot":
         UnknownName: if there is none.
     """
     with open_for_reading(settings) as store:
-        found = store.robots.find(text)
-        names = [one.name for one in store.robots.stored(hidden=True)]
-    if found is None:
+        robot = store.robots.find(text)
+        names = [stored.name for stored in store.robots.stored(hidden=True)]
+    if robot is None:
         raise UnknownName("stored robot", text, names or ["none yet; `hexapods robots import`"])
-    return found
+    return robot
 
 
 def _changed(
@@ -142,6 +168,6 @@ def _changed(
         return call_server(settings, *request, media_type="application/json")
 
 
-def _print(options: argparse.Namespace, told: Any, sentence: str) -> int:
-    print(json.dumps(told) if options.json else sentence)
+def _print(view: Any, sentence: str, as_json: bool) -> int:
+    print(json.dumps(view) if as_json else sentence)
     return 0

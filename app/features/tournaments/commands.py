@@ -3,4 +3,4 @@
 from collections.abc import Mapping, Sequence
 
 COMMANDS: Mapping[str, str] = {}
-VERIFIERS: Sequence[str] = ("app.features.tournaments.verify_command",)
+VERIFIERS: Sequence[str] = ("app.features.tournaments.verify_command:VERIFIER",)

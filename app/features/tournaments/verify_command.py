@@ -1,12 +1,11 @@
 """The part of `hexapods verify` that repeats files of tournaments."""
 
-import argparse
 import json
 from typing import TYPE_CHECKING
 
 from app.cli.exit_codes import FAILED
 from app.cli.terminal import progress, show_table
-from app.cli.verifier import Verifier
+from app.cli.verifier import Verifier, VerifyOptions
 from hexapods.agents.appearance import name_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import to_json
@@ -16,13 +15,13 @@ if TYPE_CHECKING:
     from hexapods.tournaments.tournament_file import TournamentFile
 
 
-def _verify(data: bytes, options: argparse.Namespace) -> int:
+def _verify(data: bytes, file: str, options: VerifyOptions) -> int:
     if options.sample is not None:
         raise InvalidInput("--sample is for score files of benchmarks; leave it out")
     from hexapods.tournaments.tournament_file import read_file  # noqa: PLC0415
     from hexapods.tournaments.verification import verification, version_note  # noqa: PLC0415
 
-    tournament = read_file(data, options.file)
+    tournament = read_file(data, file)
     with progress("draws") as bar:
         task = bar.add_task("judging again", total=None)
         outcome = verification(
@@ -33,7 +32,7 @@ def _verify(data: bytes, options: argparse.Namespace) -> int:
     note = version_note(tournament)
     differences = outcome.differences
     is_rounded = note is not None and outcome.rounding is not None
-    if options.json:
+    if options.as_json:
         shown = {
             "title": tournament.title,
             "repeats": not differences,
@@ -55,13 +54,13 @@ def _verify(data: bytes, options: argparse.Namespace) -> int:
     if note is not None:
         print(note)
     if is_rounded:
-        print(f"{options.file} repeats but for the last digits of distances.")
+        print(f"{file} repeats but for the last digits of distances.")
         return 0
     if differences:
-        print(f"{options.file} does not repeat: see the differences above.")
+        print(f"{file} does not repeat: see the differences above.")
         return FAILED
     judged = f"{len(tournament.entries)} entries on {tournament.rules.draws} draws"
-    print(f"{options.file} repeats to the last digit: {judged}.")
+    print(f"{file} repeats to the last digit: {judged}.")
     return 0
 
 

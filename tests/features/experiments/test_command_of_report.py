@@ -5,14 +5,13 @@ from typing import Any
 
 import pytest
 
-from app.cli.options import CommandParser, settings_from
+from app.cli.program import program_of
 from app.features.experiments import experiment_command, sweep_command
-from app.features.experiments.trial_options import trial_grid_from
+from app.features.experiments.trial_options import TrialOptions
 from hexapods.domain.gait import GaitSpec
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import ExperimentConfig, experiment_config
-from hexapods.experiments.presets import GRID
 from hexapods.experiments.report.command import command
 from tests.experiments.sample_experiments import ROBOTS
 
@@ -44,13 +43,11 @@ def test_the_command_on_the_page_reproduces_the_experiment(
 
 def _understood(typed: list[str]) -> ExperimentConfig:
     """Parse a command line as `hexapods` does."""
-    parser = CommandParser()
-    commands = parser.add_subparsers(dest="command")
-    experiment_command.add_to(commands)
-    sweep_command.add_to(commands)
-    options = parser.parse_args(typed[1:])
-    if options.command == "experiment":
-        return experiment_command.config_from(options)
-    grid = {n: getattr(options, n) for n in GRID} | settings_from(options)
-    agents = experiment_command.agents_from(options.agent)
-    return experiment_config("sweep", {**trial_grid_from(options), **grid, "agents": agents})
+    words = typed[1:]
+    _, bound, _ = program_of(words).parse_args(words, print_error=False, exit_on_error=False)
+    given = bound.arguments
+    trials = given.pop("trials", TrialOptions())
+    if words[0] == "sweep":
+        return sweep_command.config_of(trials, given)
+    worlds = given.get("worlds", experiment_command.WorldOptions())
+    return experiment_command.config_of(given["experiment"], trials, worlds)

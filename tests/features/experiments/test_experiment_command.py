@@ -145,7 +145,7 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
         (("experiment", "table1", "--observation", "guessed"), "measured, commanded, planned"),
         (("experiment", "table1", "--robot", "stiff,sloth"), "stiff, compliant, slippery"),
         (("experiment", "table1", "--robot", "stiff,stiff"), "robots names something twice"),
-        (("experiment", "table1", "--simulator", "matrix"), "mujoco, kinematic"),
+        (("experiment", "table1", "--simulator", "matrix"), '"mujoco", "kinematic"'),
         (("experiment", "table1", "--agent", "greedy"), "--agent is for figure4, league"),
         (
             ("experiment", "figure4", "--agent", "skynet"),

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.commands import command_modules
+from app.cli.commands import command_paths
 from app.events.damage import damaged_runs
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -65,5 +65,5 @@ def test_they_count_as_no_damage_and_cannot_be_imported(tmp_path: Path) -> None:
 
 def test_its_kind_and_its_commands_go_with_it() -> None:
     assert kinds_without(()) - kinds_without(WITHOUT) == {"experiment"}
-    commands = command_modules(environ={"HEXAPODS_WITHOUT": "experiments"})
+    commands = command_paths(environ={"HEXAPODS_WITHOUT": "experiments"})
     assert not {"experiment", "sweep", "tune"} & commands.keys()

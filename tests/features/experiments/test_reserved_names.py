@@ -1,33 +1,30 @@
 """Names that an agent's settings may not have: all that commands and summaries use beside them."""
 
-import argparse
 from dataclasses import fields
 
-from app.cli.program import parser_of
+from app.cli.program import program_of
 from app.features.experiments.response_models import (
     CurveOfSetting,
     PooledView,
     SettingView,
     VersusView,
 )
-from hexapods.experiments.config import ExperimentConfig
-from hexapods.runs.config import RESERVED, TrainingConfig
+from hexapods.experiments.config import ExperimentConfig, settings_by_name
+from hexapods.runs.config import RESERVED, TrainingConfig, usable_agents
 
 # Rows of summaries, which have settings beside what was measured with them.
 ROWS = (SettingView, PooledView, CurveOfSetting, VersusView)
 
 
 def names_of_commands() -> set[str]:
-    """Options of `train` and `sweep`, and where argparse keeps them."""
-    actions = parser_of()._actions
-    (commands,) = [one for one in actions if isinstance(one, argparse._SubParsersAction)]
+    """Options of `train` and `sweep` beside the agents' settings, and parameters that get them."""
+    program, settings = program_of(), settings_by_name(usable_agents())
     used: set[str] = set()
-    for name in ("train", "sweep"):
-        used |= set(commands.choices[name]._defaults)
-        for action in commands.choices[name]._actions:
-            flags = (flag.lstrip("-").replace("-", "_") for flag in action.option_strings)
-            used |= {action.dest, *flags}
-    return used
+    for command in ("train", "sweep"):
+        for argument in program[command].assemble_argument_collection():
+            if (field := argument.field_info.name) not in settings:
+                used |= {field, argument.name.lstrip("-").replace("-", "_")}
+    return (used | {"h", "help"}) - {"*"}
 
 
 def test_every_name_that_is_used_otherwise_is_reserved() -> None:
