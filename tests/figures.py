@@ -91,7 +91,7 @@ def _kinematic(seed: int, steps: int, observation: Observation, divisions: int =
 
 
 def kinematic_rows(seed: int) -> dict[str, float]:
-    """One seed's entry in every row of kinematic Q-learning that has this seed [h]."""
+    """Return a seed's entry in every row of kinematic Q-learning that has this seed [h]."""
     practices = {
         **{f"measured {steps}": _kinematic(seed, steps, "measured") for steps in MEASURED_STEPS},
         **{
@@ -109,7 +109,7 @@ def kinematic_rows(seed: int) -> dict[str, float]:
 
 
 def _blocks(seed: int) -> dict[str, float]:
-    """As the paper's Figure 4: learn 250 steps, save, load, learn 250 more."""
+    """Practise in blocks as in the paper's Figure 4: learn 250 steps, save, load, learn 250 more."""
     config, distances_m = _kinematic(seed, 250, "commanded"), {}
     table: Checkpoint | None = None
     for steps in BLOCK_STEPS:

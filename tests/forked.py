@@ -110,7 +110,7 @@ def _descriptor(stderr: IO[str] | int | None, stdout: int) -> int:
 
 
 def start_fork_server() -> None:
-    """Let a fork server import all that a server needs, before one with less is started.
+    """Start a fork server that imports all that a server needs, before one with less is started.
 
     Its resource tracker clears up silently after servers that a test kills.
     """

@@ -63,11 +63,11 @@ class PostgresServer:
             self._process.wait()
 
     def freeze(self) -> None:
-        """Let it and all that serve its connections hang, connections open."""
+        """Stop the server and all processes of its connections (SIGSTOP); the connections stay open."""
         self._tell_all(signal.SIGSTOP)
 
     def thaw(self) -> None:
-        """Let it go on."""
+        """Continue the server (SIGCONT)."""
         self._tell_all(signal.SIGCONT)
 
     def _tell_all(self, what: signal.Signals) -> None:
@@ -78,7 +78,7 @@ class PostgresServer:
                 process.send_signal(what)
 
     def url(self, database: str) -> str:
-        """Of a database on it."""
+        """Return the URL of a database on the server."""
         return f"postgresql://{_USER}@/{database}?host={self.folder}"
 
     @contextmanager

@@ -22,7 +22,7 @@ Events = Iterator[tuple[str, Any, str]]
 
 
 def environ(**variables: str) -> dict[str, str]:
-    """Of a server: its jobs have the priority of the tests, or a busy machine starves them."""
+    """Return the environment of a server whose jobs have the priority of the tests."""
     inherited = {
         name: value for name, value in os.environ.items() if not name.startswith("HEXAPODS_")
     }
@@ -103,7 +103,7 @@ class Served:
         return self.until(run, lambda now: now["state"] in states)
 
     def hurry(self, training_id: str) -> None:
-        """Let a training go on as fast as it can."""
+        """Set the pace of a training to the maximum."""
         self.in_state({"kind": "training", "id": training_id}, "running")
         path = f"/api/v1/trainings/{training_id}"
         assert self.client.patch(path, json={"pace": "max"}).status_code == 200

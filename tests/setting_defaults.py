@@ -1,4 +1,4 @@
-"""All settings of a server, those of its features too, for the tests that look for each of them."""
+"""Defaults of all settings of a server and its features, for tests that look for each of them."""
 
 from dataclasses import fields
 from itertools import chain

@@ -1,4 +1,4 @@
-"""What the core asks of all features: whose a run is, who may see it; and features that fail."""
+"""Questions of the core to all features: owner and visibility of runs; features that fail."""
 
 from collections.abc import Callable
 from pathlib import Path

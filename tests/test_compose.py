@@ -23,7 +23,7 @@ def services() -> dict[str, Any]:
 
 
 def filled_in(template: str, environment: dict[str, str]) -> str:
-    """As Compose does it, innermost first: `:-` is for what is empty, `:+` for what is not."""
+    """Return a text with its variables filled in as Compose does it, innermost first."""
     innermost = re.compile(r"\$\{(\w+)(?:(:-|:\+|:\?)([^${}]*))?\}")
 
     def fill(match: re.Match[str]) -> str:

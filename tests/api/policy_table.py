@@ -97,7 +97,7 @@ FURTHER: list[tuple[str, str]] = [
 
 
 class Role(NamedTuple):
-    """Who sends a request, which run it names, and which card the room shows.
+    """Sender of a request: its headers, the run that it names, and the card that the room shows.
 
     Attributes:
         headers: that are sent.
@@ -111,7 +111,7 @@ class Role(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What the guards did with a request; `said` is the sentence of a refusal."""
+    """Outcome of the guards for a request; `said` is the sentence of a refusal."""
 
     status: str
     said: str
@@ -309,7 +309,7 @@ _notes: list[str] = []
 
 @contextmanager
 def _recorder() -> Iterator[None]:
-    """Let routes answer without running, and let limits note what they count; none refuses."""
+    """Replace routes by ones that answer at once, and limits by ones that record and refuse nothing."""
     take, acquire = RateLimiter.take, FairSemaphore.acquire
     request_body = memory_limit._RequestBody.__init__  # noqa: SLF001
 

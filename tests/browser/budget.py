@@ -1,4 +1,4 @@
-"""How much a page shows at once: the one rule by which its controls and its words are counted.
+"""Budget of a page: counts the controls and the words that it shows at once.
 
 A control is a button, a link, a field, the head of a fold or a slider, whether it can be used now
 or not. A word is what spaces separate in a text, without those of drawings and of the options of a
@@ -44,7 +44,7 @@ _COUNT = """() => {
 
 
 class Shown(NamedTuple):
-    """What a page shows at once.
+    """Controls and words that a page shows at once.
 
     Attributes:
         controls: how many there are.

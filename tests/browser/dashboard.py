@@ -120,7 +120,7 @@ class Dashboard:
 
     @property
     def labels(self) -> Locator:
-        """What stands over the picture: the run, its conditions and its speed."""
+        """Labels over the picture: the run, its conditions and its speed."""
         return self.group("Labels of the picture")
 
     @property
@@ -154,12 +154,12 @@ class Dashboard:
 
     @property
     def panel(self) -> Locator:
-        """How it stands, the tabs, what the open one shows, and what can be done."""
+        """The panel: headline, tabs, content of the open tab, and actions."""
         return self.page.get_by_role("complementary", name="Panel", exact=True)
 
     @property
     def headline(self) -> Locator:
-        """How the race or the practice stands, in a line; or the move that is explained."""
+        """Headline: the state of the race or the practice in a line, or the move that is explained."""
         return self.panel.locator("header").get_by_role("heading")
 
     @property
@@ -231,7 +231,7 @@ class Dashboard:
 
     @property
     def details(self) -> Locator:
-        """What is shown beside the list of runs: one run, or all that are selected."""
+        """Details beside the list of runs: of one run, or of all that are selected."""
         return self.page.get_by_role("region", name="Details", exact=True)
 
     def picture(self) -> str:
@@ -253,7 +253,7 @@ class Dashboard:
         return len(shown) == lanes and all(_METRES.fullmatch(distance) for distance in shown)
 
     def box(self, selector: str) -> FloatRect:
-        """Where the first element of a selector lies in the window [px]."""
+        """Return the place of the first element of a selector in the window [px]."""
         box = self.page.locator(selector).first.bounding_box()
         assert box is not None
         return box

@@ -56,7 +56,7 @@ class RoomPage(Dashboard):
 
     @property
     def distance(self) -> Locator:
-        """How far the own robot went."""
+        """Distance of the participant's own robot."""
         return self.page.locator(".own-distance b")
 
 

@@ -24,7 +24,7 @@ _ENDS_WITHIN_S = 20
 
 
 class Serving:
-    """One server.
+    """A server process on a data folder, with its address.
 
     Attributes:
         address: where it is on this machine, with a slash at the end.
@@ -83,7 +83,7 @@ class Serving:
 
     @property
     def pid(self) -> int:
-        """Of its process."""
+        """Id of its process."""
         return self._process.pid
 
     def kill(self) -> None:

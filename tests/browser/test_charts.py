@@ -59,7 +59,7 @@ def box_of(chart: Locator) -> FloatRect:
 
 
 def position(chart: Locator) -> float:
-    """Where the crosshair is, or would be first: seconds or steps."""
+    """Return the position of the crosshair, or its first one: seconds or steps."""
     words = chart.get_attribute("aria-valuetext") or ""
     return float(words.split("\u00a0")[0].split(" ")[0])
 

@@ -82,7 +82,7 @@ def skip_the_practice(dashboard: Dashboard) -> None:
 
 
 def own_runs_alone_are_changed(dashboard: Dashboard, other_id: str) -> None:
-    """In the list of runs the own ones can be renamed and deleted, others run again."""
+    """Check that a visitor can rename and delete own runs in the list, and only repeat others."""
     page = dashboard.page
     page.goto(f"{page.url.partition('?')[0]}#runs")
     expect(dashboard.runs.first).to_be_visible()

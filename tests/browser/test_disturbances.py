@@ -27,7 +27,7 @@ def changes(dashboard: Dashboard) -> list[dict[str, Any]]:
 
 
 def disturbances_now(dashboard: Dashboard) -> Locator:
-    """What happens to the robot that practises, and the controls of it."""
+    """Return the region of the disturbances of the robot that practises, with its controls."""
     return dashboard.page.get_by_role("region", name="Disturbances now", exact=True)
 
 
@@ -209,7 +209,7 @@ def step_of(branch: Locator) -> str:
 
 
 def branches_by_a_pick(dashboard: Dashboard, race: dict[str, Any]) -> None:
-    """What happens to a leg that is picked in the picture starts a branch of the race there."""
+    """Disturb a leg that is picked in the picture, which starts a branch of the race there."""
     picks_a_leg(dashboard)
     dashboard.button("Stuck").click()
     dashboard.page.get_by_role("button", name=re.compile(r"^Race on from \d")).click()

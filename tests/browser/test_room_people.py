@@ -1,4 +1,4 @@
-"""Who is in a room: removed by the teacher, and tried alone where phones cannot come."""
+"""Participants of a room: the teacher removes them, and tries a room where no phone can come."""
 
 import re
 from collections.abc import Iterator

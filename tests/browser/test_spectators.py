@@ -96,7 +96,7 @@ def reads_only(dashboard: Dashboard) -> int:
 
 
 def replay_explain_and_download(dashboard: Dashboard, race_id: str) -> None:
-    """What a spectator can do is offered as buttons, and does it on this page only."""
+    """Replay, explain and download as a spectator, by buttons and on this page only."""
     page = dashboard.page
     region = page.get_by_role("region", name="You are watching")
     region.get_by_role("button", name="Replay it here").click()
@@ -114,7 +114,7 @@ def replay_explain_and_download(dashboard: Dashboard, race_id: str) -> None:
 
 
 def try_settings_until_refused(dashboard: Dashboard) -> None:
-    """What if is asked when the spectator says so, and as often as the server allows."""
+    """Ask what-ifs as a spectator until the server refuses more."""
     page = dashboard.page
     panel = dashboard.open_tab("What if")
     panel.get_by_role("button", name="Try the settings as they are").click()

@@ -14,7 +14,7 @@ WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
 
 
 def explanation(page: Page) -> Locator:
-    """What the tab "Why" says of the step that is looked at."""
+    """Return the content of the tab "Why" for the step that is looked at."""
     return page.get_by_role("region", name="Explanation", exact=True)
 
 

@@ -1,4 +1,4 @@
-"""One screen: in each depth and tab it keeps its budgets, never scrolls, and is accessible."""
+"""The workspace: each tab of each depth keeps its budgets, never scrolls, and is accessible."""
 
 import re
 from collections.abc import Iterator

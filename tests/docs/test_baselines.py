@@ -22,7 +22,7 @@ DEEP = ("sb3_agents:Dqn", "sb3_agents:Ppo")
 
 @pytest.fixture(autouse=True)
 def _examples(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let Python find the examples."""
+    """Add the folder of the examples to Python's module path."""
     monkeypatch.syspath_prepend(str(EXAMPLES))
 
 

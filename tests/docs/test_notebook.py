@@ -14,7 +14,7 @@ NOTEBOOK = ROOT / "docs" / "notebooks" / "reproduce.ipynb"
 
 @pytest.fixture(scope="module")
 def outputs(tmp_path_factory: pytest.TempPathFactory) -> list[Any]:
-    """Of every cell in order, on few seeds, in a kernel of its own."""
+    """Return the outputs of every cell in order, on few seeds, in a kernel of its own."""
     notebook = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
     folder: Path = tmp_path_factory.mktemp("notebook")
     with pytest.MonkeyPatch.context() as environment:

@@ -21,7 +21,7 @@ QUICK: dict[str, Any] = {"simulator": "kinematic", "steps": 5}
 
 @pytest.fixture(scope="module")
 def examples() -> Mapping[str, object]:
-    """What the library returns and takes, as large as it usually is."""
+    """Return objects that the library returns and takes, as large as they usually are."""
     practice = hx.iter_train(record=True, evaluate_every=5, robot={"n_legs": 8}, **QUICK)
     records = list(practice)
     training = practice.training

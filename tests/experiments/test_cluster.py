@@ -1,4 +1,4 @@
-"""Where trials run: worker processes of this machine, and an existing Dask cluster."""
+"""Workers of trials: processes of this machine, and an existing Dask cluster."""
 
 import os
 import signal

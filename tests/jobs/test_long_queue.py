@@ -14,7 +14,7 @@ from tests.jobs.test_jobs import training
 
 
 class Cost(NamedTuple):
-    """What something in a queue has taken.
+    """Time and memory that something in a queue has taken.
 
     Attributes:
         transactions: of the database.

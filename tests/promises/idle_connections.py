@@ -23,7 +23,7 @@ _KINDS = 4
 
 
 class IdleConnection:
-    """One anonymous connection, which can be reopened."""
+    """An anonymous connection that stays idle, and can be reopened."""
 
     def __init__(self, number: int, port: int, address: str, paths: Sequence[str]) -> None:
         self.kind = number % _KINDS

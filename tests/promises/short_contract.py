@@ -115,7 +115,7 @@ def _with_few_choices(document: Any) -> Any:
 
 
 def _is_choice_of(name: str, schema: dict[str, Any]) -> bool:
-    """Tell whether a schema is a choice of several, of which one has this name."""
+    """Whether a schema is a choice of several, of which one has this name."""
     return name in {_name_of(choice) for choice in schema.get("oneOf", ())}
 
 
@@ -124,7 +124,7 @@ def _name_of(reference: dict[str, str]) -> str:
 
 
 def _is_robot(schema: dict[str, Any]) -> bool:
-    """Tell whether a schema is that of a robot's parts."""
+    """Whether a schema is that of a robot's parts."""
     return "mount_radius_m" in schema.get("properties", ())
 
 

@@ -56,7 +56,7 @@ class Visit:
         self._server.stop()
 
     def drive(self) -> list[str]:
-        """Let random events happen; return their names."""
+        """Carry out random events; return their names."""
         names = self._chance.choices(list(WEIGHTS), list(WEIGHTS.values()), k=EVENTS)
         for name in names:
             getattr(self, name)()
@@ -79,7 +79,7 @@ class Visit:
         self._send("POST", "/races", json={**RACE, "lanes": lanes, "steps": 5})
 
     def resume(self) -> None:
-        """Let a run go on that ended early."""
+        """Resume a run that ended early."""
         if ended := [run for run in self._runs() if run["state"] in EARLY_ENDS]:
             run = self._chance.choice(ended)
             self._send("POST", f"/{run['kind']}s/{run['id']}/resume")
@@ -156,7 +156,7 @@ class Visit:
 
 
 class Words:
-    """What the page says."""
+    """Texts that the page shows."""
 
     def __init__(self, dashboard: Dashboard) -> None:
         page = dashboard.page

@@ -56,7 +56,7 @@ WEIGHTS = {
 
 @dataclass
 class Expected:
-    """What a person expects: the runs, the one on stage, and whether a person chose it."""
+    """Expected state: the runs, the one on stage, and whether a person chose it."""
 
     states: dict[str, State] = field(default_factory=dict)
     """By run, in the order of their starts."""

@@ -238,7 +238,7 @@ def test_after_a_day_nothing_is_left_though_the_server_was_down(tmp_path: Path) 
 
 
 def let_a_day_pass(data: Path, run_id: str) -> None:
-    """Let a run be a day older than it is."""
+    """Set the times of a run back by a day in the database."""
     earlier = (datetime.now(UTC) - timedelta(days=1)).replace(tzinfo=None).isoformat(" ")
     with closing(sqlite3.connect(data / "hexapods.db")) as connection, connection:
         changed = connection.execute(

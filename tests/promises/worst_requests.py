@@ -136,7 +136,7 @@ def bodies(fields: tuple[str, ...]) -> Iterator[tuple[str, bytes]]:
 
 
 class Cost(NamedTuple):
-    """What a request cost.
+    """Processor time and memory that a request took.
 
     Attributes:
         processor_s: time of the server's processor [s].

@@ -1,4 +1,4 @@
-"""What is told of a walking problem before anything runs."""
+"""Preview of a walking problem before anything runs."""
 
 import re
 from typing import Any

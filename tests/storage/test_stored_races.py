@@ -41,7 +41,7 @@ def raced() -> list[LaneRecording]:
 def record(
     recordings: Recordings, raced: list[LaneRecording], steps: int = STEPS, failed: int = STEPS
 ) -> None:
-    """Let a race run: each lane takes a step in turn, the last one fails after some."""
+    """Record a race: each lane takes a step in turn, the last one fails after some."""
     lanes = [LaneRecording(lane.agent, lane.rest_qpos) for lane in raced]
     recordings.begin_race("a", lanes)
     for number in range(steps):

@@ -66,7 +66,7 @@ TWO_DRAWS = (Draw(5, "flat"), Draw(2**53 - 1, "ice"))
 
 @pytest.fixture(scope="module")
 def elsewhere() -> dict[str, Judgement]:
-    """What another process judges of each agent on the second draw."""
+    """Return the judgement of each agent on the second draw, made by another process."""
     script = (
         "import pickle, sys; from hexapods.tournaments.judging import judge; "
         "given = pickle.load(sys.stdin.buffer); "

@@ -1,4 +1,4 @@
-"""One test for each assumption that `hexapods.drawing.viser_internals` lists, under its name.
+"""Tests of the assumptions that `hexapods.drawing.viser_internals` lists, one each, by name.
 
 Private parts of viser are imported within the tests, so that each fails for itself in a version
 that lacks them. Facts of the browser's side are looked up in the client's minified script.

@@ -1,4 +1,4 @@
-"""One run as an archive, and back."""
+"""Export a run to an archive, and import it."""
 
 from app.features.archives.transfer import export_chunks, import_runs
 from app.storage.database.store import RunStore

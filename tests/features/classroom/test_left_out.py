@@ -1,4 +1,4 @@
-"""What a server that leaves the classroom out keeps hidden: runs of participants, tournaments."""
+"""A server without the classroom hides the runs of participants, and tournaments of rooms."""
 
 from datetime import UTC, datetime
 from pathlib import Path

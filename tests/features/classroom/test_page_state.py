@@ -1,4 +1,4 @@
-"""What a card may open of the page is what the page has: its own state, and its features'."""
+"""The page's state that cards may set is that of the page and of its features."""
 
 import re
 from dataclasses import fields

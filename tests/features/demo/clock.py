@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 
 
 class Clock:
-    """Both clocks of a demo: that of the day, and the monotonic one; neither moves by itself.
+    """Both clocks of a demo, the time of day and the monotonic one, which a test sets.
 
     Attributes:
         now: in UTC.
@@ -24,5 +24,5 @@ class Clock:
         return (self.now - self._since).total_seconds()
 
     def pass_time(self, **parts: float) -> None:
-        """Let time pass."""
+        """Advance both clocks."""
         self.now += timedelta(**parts)

@@ -1,4 +1,4 @@
-"""What `hexapods doctor` says of a demo's visitors."""
+"""Check of `hexapods doctor` for a demo's visitors."""
 
 import sqlite3
 from contextlib import closing

@@ -106,14 +106,14 @@ def test_a_server_that_was_down_deletes_when_it_starts(
 
 
 class Restarted(NamedTuple):
-    """What a server finds that starts again."""
+    """Store, jobs and visitors of a server that has started again."""
 
     visitors: Visitors
     expiry: Expiry
     clock: Clock
 
     def sweep_after(self, **time: float) -> None:
-        """Let time pass, and clean up."""
+        """Advance the clock, and clean up."""
         self.clock.pass_time(**time)
         self.expiry.sweep()
 

@@ -1,4 +1,4 @@
-"""What is answered about experiments is as its models describe it."""
+"""Answers about experiments match their response models."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""From an entry of the registry of exports follow its route, command and menu row."""
+"""A registered export format gets its route, its command and its row of the menu."""
 
 import json
 import subprocess

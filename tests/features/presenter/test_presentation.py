@@ -1,4 +1,4 @@
-"""What presenters' windows show is kept with the stage, and told to all who watch it."""
+"""The presentation's state is stored with the stage, and published to all who watch it."""
 
 from pathlib import Path
 

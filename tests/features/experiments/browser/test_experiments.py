@@ -217,7 +217,7 @@ def test_a_preset_shows_few_fields_and_a_link_carries_them(
 
 
 def is_renamed(dashboard: Dashboard) -> None:
-    """Its name and notes are changed in the report; its row has the name, and what came of it."""
+    """Change name and notes in the report; the row has the name and the result."""
     page = dashboard.page
     more = page.get_by_label("More about this experiment")
     more.click()

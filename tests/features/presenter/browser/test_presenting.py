@@ -128,7 +128,7 @@ def follows_its_remote(dashboard: Dashboard, remote: Dashboard) -> None:
 
 
 def obeys_its_own_keys(dashboard: Dashboard) -> None:
-    """As those of a remote control for slides; it fills the screen, until Escape or P."""
+    """Press the keys of a remote control for slides; it fills the screen until Escape or P."""
     page, card = dashboard.page, presenter_panel(dashboard)
     page.keyboard.press("PageDown")
     expect(card).to_contain_text("Card 2 of")

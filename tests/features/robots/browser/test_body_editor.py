@@ -130,7 +130,7 @@ def move_legs(page: Page, editor: Locator) -> float:
 
 
 def add_legs_and_shorten_one(dashboard: Dashboard, editor: Locator) -> None:
-    """What the server tells follows; what is impossible is said at its leg, and can be mended."""
+    """Add legs, and shorten one until the server refuses it at that leg; then mend it."""
     editor.get_by_role("button", name="Add a leg").click()
     expect(preview_in(editor)).to_contain_text("6 legs: 25 states")
     expect(editor.locator(".body-picture path.limb")).to_have_count(6)
