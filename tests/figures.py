@@ -109,7 +109,7 @@ def kinematic_rows(seed: int) -> dict[str, float]:
 
 
 def _blocks(seed: int) -> dict[str, float]:
-    """Practise in blocks as in the paper's Figure 4: learn 250 steps, save, load, learn 250 more."""
+    """Practise in blocks as in the paper's Figure 4: learn 250 steps, save, load, learn 250."""
     config, distances_m = _kinematic(seed, 250, "commanded"), {}
     table: Checkpoint | None = None
     for steps in BLOCK_STEPS:

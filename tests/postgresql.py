@@ -63,7 +63,7 @@ class PostgresServer:
             self._process.wait()
 
     def freeze(self) -> None:
-        """Stop the server and all processes of its connections (SIGSTOP); the connections stay open."""
+        """Stop the server and the processes of its connections (SIGSTOP); these stay open."""
         self._tell_all(signal.SIGSTOP)
 
     def thaw(self) -> None:

@@ -14,7 +14,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
 
 MAX_MODEL_LANDINGS = 300_000
-"""Maximum of landings of which a model is kept; each takes about 1 kB."""
+"""Maximum of landings of a model; each takes about 1 kB."""
 
 
 class LandingArrays(ModelArrays):
@@ -46,8 +46,8 @@ class LandingArrays(ModelArrays):
 class AfterstateRMax(RMax):
     """R-max with a model of landings, in place of one of states and actions.
 
-    A landing is unknown until it came m times. It goes on learning of those that are known: a cell
-    stands for all places of the feet near it, and the mean of many tells more than the first.
+    A landing is unknown until it came m times. The estimates of known landings still change: a cell
+    stands for all places of the feet near it, so that a mean of many rewards is more exact.
 
     Args:
         settings: as for `RMax`.

@@ -39,18 +39,18 @@ def name_of(
         keep_learning: whether it learns in the race; shown if that is not the agent's default.
         title: replaces the agent's title.
     """
-    parts = [title or title_of(agent)]
+    phrases = [title or title_of(agent)]
     agent_class = None if ":" in agent else BUILT_IN.get(agent) or registered().get(agent)
     if agent_class is not None:
         shows_all = not getattr(agent_class, "learns", True)
-        parts += [
+        phrases += [
             setting.describe(settings[name])
             for name, setting in settings_of(agent_class).items()
             if name in settings and (shows_all or settings[name] != setting.default)
         ]
     if keep_learning not in (None, bool(getattr(agent_class, "keeps_learning", False))):
-        parts.append("keeps learning" if keep_learning else "frozen")
-    return ", ".join(parts)
+        phrases.append("keeps learning" if keep_learning else "frozen")
+    return ", ".join(phrases)
 
 
 def colors_of(agents: Sequence[str]) -> list[str]:
@@ -58,16 +58,16 @@ def colors_of(agents: Sequence[str]) -> list[str]:
 
     An agent gets the colour of its class, or a free one if that is taken or there is none.
     """
-    own_colors = [_attribute(agent, "color") for agent in agents]
+    class_colors = [_attribute(agent, "color") for agent in agents]
     built_in_colors = (_attribute(agent, "color") for agent in BUILT_IN)
     candidates = list(
         dict.fromkeys([*_FURTHER_COLORS, *(color for color in built_in_colors if color)])
     )
     assigned: list[str] = []
-    for color in own_colors:
+    for color in class_colors:
         free = [candidate for candidate in candidates if candidate not in assigned]
         spare = next(
-            (candidate for candidate in free if candidate not in own_colors),
+            (candidate for candidate in free if candidate not in class_colors),
             (free or candidates)[0],
         )
         assigned.append(spare if color is None or color in assigned else color)

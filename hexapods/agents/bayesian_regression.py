@@ -7,15 +7,15 @@ import numpy as np
 from hexapods.domain.types import FloatArray
 
 _SUMS, _BLOCK = 8, 128
-"""Of NumPy's pairwise summation: number of sums at once, and of numbers that they are used for."""
+"""NumPy's pairwise summation adds up to 128 numbers in 8 interleaved sums."""
 
 
 class BayesianRegression:
     """Linear regression with a Gaussian prior of the weights and known noise.
 
     Posterior precision Λ = Λ₀ + XᵀX / σ², covariance Λ⁻¹, mean Λ⁻¹ (Λ₀ m₀ + Xᵀr / σ²). With a
-    forgetting factor below 1 the evidence XᵀX, Xᵀr decays geometrically, and what is not observed
-    any more becomes as uncertain again as it was a priori.
+    forgetting factor below 1 the evidence XᵀX, Xᵀr decays geometrically, and the deviation of a
+    weight without new outcomes returns to that of the prior.
 
     Args:
         mean: prior mean m₀ of the weights, (d,).
@@ -74,20 +74,20 @@ class BayesianRegression:
 def sum_rule(products: Mapping[int, str], count: int) -> str:
     """Return the sum of a few of `count` numbers, in the order in which NumPy adds them.
 
-    All others are 0. NumPy adds pairwise: up to seven numbers one by one, up to 128 in eight sums
-    of every eighth number, and more in halves (`pairwise_sum` in its loops_utils.h).
+    All other numbers are 0. NumPy adds pairwise: up to seven numbers one by one, up to 128 in eight
+    sums of every eighth number, and more in halves (`pairwise_sum` in its loops_utils.h).
 
     Args:
-        products: text of each number by its index, without the others.
-        count: number of all.
+        products: text of each number that is not 0, by its index.
+        count: number of all numbers.
     """
     if count < _SUMS:
         return _plus(*(products[index] for index in sorted(products)))
     if count > _BLOCK:
         half = count // 2 - count // 2 % _SUMS
         first = {index: text for index, text in products.items() if index < half}
-        rest = {index - half: text for index, text in products.items() if index >= half}
-        return _plus(sum_rule(first, half), sum_rule(rest, count - half))
+        second = {index - half: text for index, text in products.items() if index >= half}
+        return _plus(sum_rule(first, half), sum_rule(second, count - half))
     end = count - count % _SUMS
     sums = [
         _plus(*(products[index] for index in range(begin, end, _SUMS) if index in products))
@@ -98,9 +98,9 @@ def sum_rule(products: Mapping[int, str], count: int) -> str:
     return _plus(*sums, *(products[index] for index in range(end, count) if index in products))
 
 
-def _plus(*parts: str) -> str:
-    """Return the sum of some parts from the left; sums to the right are in parentheses."""
-    first, *more = [summand for summand in parts if summand] or [""]
+def _plus(*summands: str) -> str:
+    """Return the sum of the summands from the left; sums among them are in parentheses."""
+    first, *further = [summand for summand in summands if summand] or [""]
     return " + ".join(
-        [first, *(f"({summand})" if " + " in summand else summand for summand in more)]
+        [first, *(f"({summand})" if " + " in summand else summand for summand in further)]
     )

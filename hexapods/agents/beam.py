@@ -16,8 +16,8 @@ class Beam(Search):
     Of each layer of the tree the nodes with the highest sums are expanded, with all their actions,
     by one call of `expand`; ties go to the sequence that comes first. With A actions in each state,
     a decision simulates at most A + (depth − 1) · width · A transitions. With a width of
-    A^(depth−1) it is the exhaustive look-ahead; with less it may drop a sequence that begins badly
-    and ends well.
+    A^(depth−1) it is the exhaustive look-ahead; with less it may drop the best sequence, if that
+    begins with low rewards.
 
     Args:
         expand: simulates the transitions.
@@ -56,7 +56,7 @@ class Beam(Search):
         """
         actions = action_count(problem)
         parents = [min(width, actions**level) for level in range(depth)]
-        sizes = [actions * after for after in accumulate(parents)]
+        sizes = [actions * count for count in accumulate(parents)]
         check_depth(depth, sizes, actions)
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:

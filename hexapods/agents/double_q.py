@@ -10,11 +10,11 @@ from hexapods.agents.tabular import TabularLearner
 
 
 class DoubleQ(TabularLearner):
-    """Off-policy learner with two tables: one names the best next action, the other values it.
+    """Off-policy learner with two tables: one chooses the best next action, the other values it.
 
-    A maximum over noisy values is too high on average; with two tables that learned from different
-    steps the noise of the choice is not that of the value. `table` holds the mean of both, in which
-    the policy is ε-greedy.
+    A maximum over noisy values is too high on average. Two tables that learned from different steps
+    have independent noise, so that the value of the choice is not biased. `table` holds the mean of
+    both, in which the policy is ε-greedy.
     """
 
     title = "Double Q"
@@ -28,7 +28,7 @@ class DoubleQ(TabularLearner):
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Q₁(s, a) ← (1 − α) Q₁(s, a) + α (r + γ Q₂(s′, argmax Q₁(s′, ·))).
 
-        Which of the two tables is Q₁ is drawn by lot; ties of the maximum as well.
+        Which of the two tables is Q₁ is drawn at random; ties of the maximum as well.
         """
         drawn, next_value = self._draw(transition)
         learning, valuing = self._halves[drawn], self._halves[1 - drawn]

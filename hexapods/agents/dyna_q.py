@@ -8,7 +8,7 @@ from hexapods.agents.tabular_model import TriedPair
 class DynaQ(PlanningLearner):
     """Q-learning that repeats remembered steps: each real step is followed by n imagined ones.
 
-    Imagined steps start from tried pairs drawn by lot, and end as the newest try of the pair did:
+    Imagined steps are pairs of the model, drawn at random, with the outcome of their newest try:
     the world is assumed to be deterministic.
     """
 

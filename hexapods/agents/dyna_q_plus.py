@@ -28,8 +28,8 @@ Bonus = Annotated[
 class DynaQPlus(DynaQ):
     """Dyna-Q that imagines a bonus of κ√τ for a pair that was not tried for τ steps.
 
-    So it tries again what was no good once, and notices a world that has changed. Untried actions
-    of a visited state are imagined too, as ones that earn nothing but the bonus and change nothing.
+    So it tries pairs with low values again, and notices a world that has changed. Untried actions
+    of a visited state are imagined too, with the bonus as reward, and without a change of state.
 
     Args:
         bonus_m: κ [m].
@@ -46,8 +46,8 @@ class DynaQPlus(DynaQ):
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Update as in Dyna-Q, with all actions of this state in the model from now on."""
-        for other in legal_columns(state, self.table.groups, self.table.cells):
-            self._model.imagine(state, other)
+        for legal_column in legal_columns(state, self.table.groups, self.table.cells):
+            self._model.imagine(state, legal_column)
         super()._update(transition, state, column)
 
     def _imagined_reward_m(self, pair: TriedPair) -> float:

@@ -8,8 +8,8 @@ from hexapods.domain.sums import ordered_sum
 class ExpectedSarsa(TabularLearner):
     """On-policy learner: the update uses the mean value of the next action under its policy.
 
-    The mean over all actions that the ε-greedy policy may take has less variance than the value of
-    the one that it happens to take, as in Sarsa.
+    The mean over all actions of the ε-greedy policy has less variance than the value of the action
+    that is drawn, as in Sarsa.
     """
 
     title = "Expected Sarsa"

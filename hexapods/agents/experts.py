@@ -30,11 +30,11 @@ Prior = Annotated[
 NOISE = 0.15
 _DEVIATION, _LATERAL_DEVIATION = 1.0, 0.1
 FORGETTING = 0.98
-"""Share of the evidence, and of what policies earned, that remains at each further step."""
+"""Share of the evidence, and of the policies' rewards, that remains at each further step."""
 
 
 class Readings(NamedTuple):
-    """The state before a step, as the experts read it."""
+    """The observations of the state before a step, one for each expert."""
 
     cells: Cells
     """The measured cells, whatever the run's observation is."""
@@ -83,7 +83,7 @@ class Expert(ABC):
 
     @abstractmethod
     def feature_name(self, index: int) -> str:
-        """Return what a feature is, in words."""
+        """Return the name of a feature, for explanations."""
 
     def upper_bound_m(
         self, before: Readings, actions: Sequence[Action], optimism: float
@@ -118,9 +118,9 @@ class PlannedExpert(Expert):
     """Features of the planned offsets after landing, which are continuous: 1 + groups weights.
 
     They are the mean forward offset of all feet, by which the body would move without slip, and
-    each group's lateral offset, as a wider or narrower stance slips less or more. One weight for
-    all forward offsets: with a weight for each group, greedy steps favour the groups that push well
-    and never bring the others forward.
+    each group's lateral offset, as a wider or narrower stance slips less or more. All forward
+    offsets share one weight: with a weight for each group, greedy steps favour the groups with the
+    largest weights and never bring the other groups forward.
     """
 
     name = "planned"
@@ -141,16 +141,16 @@ class PlannedExpert(Expert):
 
 
 class ExpertPolicy(NamedTuple):
-    """One way of choosing: by an expert, and in which order the groups take turns."""
+    """A policy: an expert, and the order in which the groups take turns."""
 
     expert: Expert
     successor: tuple[int, ...] | None
     """The group that moves after each group; None if any may."""
     untried: float
-    """Reward per step that it is expected to earn before it was tried, as a share of the law's."""
+    """Expected reward per step of the untried policy, as a share of the law's."""
 
     def allowed(self, legal: Sequence[Action], last_group: int) -> Sequence[Action]:
-        """Return the legal actions among which it chooses; all if the group in turn has none."""
+        """Return the legal actions of the group in turn; all legal actions if it has none."""
         if self.successor is None:
             return legal
         return [action for action in legal if action.group == self.successor[last_group]] or legal

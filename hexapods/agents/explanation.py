@@ -61,7 +61,7 @@ class Belief(NamedTuple):
     after: float
     unit: str = "m"
     deviation_before: float | None = None
-    """Standard deviation of the belief, for one that knows how sure it is."""
+    """Standard deviation of the belief; None for a model without one."""
     deviation_after: float | None = None
 
 
@@ -70,11 +70,11 @@ class UpdateExplanation:
     """Update of a learner's values by a transition.
 
     Attributes:
-        summary: in a sentence or two.
-        update: of the value that the step taught directly; None if it taught none.
-        others: further updates, such as planned ones and those of earlier steps, in order. No
-            value has one among them before its direct update.
-        beliefs: what a model believes of the step.
+        summary: one or two sentences.
+        update: update of the value of the step itself; None if that was not updated.
+        others: further updates, such as planned ones and those of earlier steps, in order. None of
+            the value of `update` is before it.
+        beliefs: estimates of a model about the step.
     """
 
     summary: str
@@ -84,7 +84,7 @@ class UpdateExplanation:
 
     @property
     def stored(self) -> float | None:
-        """The value of the direct update when all is done, as others may have changed it again."""
+        """The value of `update` after all updates, as later ones may have changed it again."""
         if self.update is None:
             return None
         place = self.update.observation, self.update.action
@@ -102,10 +102,10 @@ class ChoiceExplanation:
         action: the action.
         kind: whether it was the best by the scores, a random one, or one that is tried because it
             is unknown.
-        criterion: what the scores are.
-        scores: by which it chooses [m], (groups, cells); NaN where it could not choose.
-        epsilon: probability of a random action; None for a learner without.
-        draw: the random number that was compared with it; None if none was drawn.
+        criterion: name of the scores.
+        scores: scores of the actions [m], (groups, cells); NaN for an action without one.
+        epsilon: probability of a random action; None for a learner without ε.
+        draw: the random number that was compared with ε; None if none was drawn.
     """
 
     action: Action
@@ -123,7 +123,7 @@ class ChoiceExplanation:
 
     @property
     def runner_up(self) -> Action | None:
-        """The action with the highest score but the chosen one; None if there is no other."""
+        """The action with the highest score beside the chosen one; None if there is no other."""
         other_scores = self.scores.copy()
         other_scores[self.action] = np.nan
         if np.isnan(other_scores).all():
@@ -132,13 +132,15 @@ class ChoiceExplanation:
 
     @property
     def margin(self) -> float | None:
-        """Its score less that of the runner-up [m]; negative if it is lower."""
-        other = self.runner_up
-        return None if other is None else float(self.scores[self.action] - self.scores[other])
+        """Difference of its score and the runner-up's [m]; negative if its own is lower."""
+        runner_up = self.runner_up
+        if runner_up is None:
+            return None
+        return float(self.scores[self.action] - self.scores[runner_up])
 
     @property
     def probability(self) -> float:
-        """Probability of this action in this state, by chance and by ties."""
+        """Probability of this action in this state, by exploration and by ties."""
         if self.kind == "unknown":
             return 1.0 / len(self.best)
         epsilon, count = self.epsilon or 0.0, int(np.isfinite(self.scores).sum())
@@ -195,7 +197,7 @@ def evaluate(rule: str, terms: Sequence[Term]) -> float:
     """Return the value of a rule with the numbers of its terms, in IEEE double precision.
 
     Raises:
-        ValueError: if a symbol is not among the terms, or the rule is no arithmetic.
+        ValueError: if a symbol is not among the terms, or the rule is not arithmetic.
     """
     text = _substituted(rule, terms, repr).replace("−", "-").replace("·", "*")
     try:
@@ -242,7 +244,7 @@ def in_millimetres(metres: float) -> str:
 
 
 def copy_of(rng: np.random.Generator) -> np.random.Generator:
-    """Return a generator that draws the same numbers, to look at what will be drawn."""
+    """Return a copy of a generator, which draws the same numbers."""
     bits = type(rng.bit_generator)()
     bits.state = rng.bit_generator.state
     return np.random.Generator(bits)

@@ -1,8 +1,8 @@
 """Policies that neither learn nor look ahead: a metachronal wave made by hand, and a random walk.
 
-A step of this robot swings one group of legs. So of the gaits of insects (Wilson 1966, "Insect
-walking", Annual Review of Entomology 11) pairs allow those in which two legs swing at a time, pair
-after pair: metachronal waves. With groups of three the wave is the tripod gait.
+A step of this robot swings one group of legs. With pairs of legs the possible gaits of insects
+(Wilson 1966, "Insect walking", Annual Review of Entomology 11) are metachronal waves, in which two
+legs swing at a time, pair after pair. With groups of three the wave is the tripod gait.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ Direction = Annotated[
 
 
 _ON_AXIS = 1e-9
-"""Sine of the azimuth of a leg straight ahead or behind, at most."""
+"""Largest sine of the azimuth of a leg that counts as straight ahead or behind."""
 
 
 class Wave:
@@ -43,7 +43,7 @@ class Wave:
 
     Args:
         problem: groups, foot grid and where the legs are.
-        direction: of the wave.
+        direction: direction of the wave.
     """
 
     learns = False
@@ -66,14 +66,14 @@ class Wave:
         group = self._order[self._steps % len(self._order)]
         self._steps += 1
         steps = (Action(group, cell) for cell in self._front)
-        # Where reach is short, a group may have to wait for others.
+        # Where reach is short, the front may be illegal until other groups have moved.
         return next((step for step in steps if step in legal), legal[0])
 
     def learn(self, transition: Transition) -> None:
         """Do nothing."""
 
     def state(self) -> AgentState:
-        """Return the number of steps, by which the next group is known."""
+        """Return the number of steps, which determines the next group."""
         return {"steps": np.array([self._steps])}
 
     def load(self, state: AgentState) -> None:
@@ -119,7 +119,7 @@ class RandomWalk:
         """Do nothing."""
 
     def state(self) -> AgentState:
-        """Return nothing: there is nothing to keep."""
+        """Return an empty state: it stores nothing between steps."""
         return {}
 
     def load(self, state: AgentState) -> None:

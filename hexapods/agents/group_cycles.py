@@ -1,9 +1,9 @@
 """Bandit over the order in which groups of legs move: short cycles, judged in blocks that double.
 
-Which order pays is seen only once the feet have come into it, so a cycle is judged by the second
-half of a block. The cycle that is kept decides for twice as long after each challenge that it
-survives, as in sequential halving (Karnin et al. 2013); a challenger is chosen by an upper
-confidence bound that grows with the time since it was last tried (Auer et al. 2002).
+The reward of a cycle settles only after the feet have gone through it, so a cycle is judged by the
+second half of a block. Blocks of the best cycle double after each challenger that earns less, as in
+sequential halving (Karnin et al. 2013); a challenger is chosen by an upper confidence bound that
+grows with the time since it was last tried (Auer et al. 2002).
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,11 +29,11 @@ Cycle = tuple[int, ...]
 """Groups in the order in which they move, again and again."""
 
 _ROUNDS, _LONGEST = 2, 96
-"""Rounds of a challenger's block; most steps of the block of the cycle that is kept."""
+"""Rounds of a challenger's block; most steps of the best cycle's block."""
 _MOST = 2**31
-"""More than any number of blocks or steps of a state that can be restored."""
+"""Limit of the numbers of blocks and steps of a state that is restored."""
 _AGE = 0.03
-"""Growth of a bound, as a share of the law's reward, with the square root of the blocks since."""
+"""Width of a bound, as a share of the law's reward, by √(blocks since the policy's last)."""
 _UNTRIED_FURTHER, _UNTRIED_FREE = 0.8, 0.5
 """Reward per step that an untried policy is expected to earn, as a share of the law's: a cycle in
 which a group moves more often than others, and one in which any group may move."""
@@ -66,12 +66,12 @@ class CycleBandit:
     """Chooses among policies, each of a cycle or free in its order, by what their steps earn.
 
     Args:
-        cycles: of each policy; None where any group may move.
+        cycles: cycle of each policy; None where any group may move.
         groups: number of groups of legs.
         law_m: reward per step of the steady walk without slip.
 
     Attributes:
-        kept: the policy that has earned most.
+        kept: the policy with the highest reward so far.
     """
 
     def __init__(self, cycles: Sequence[Cycle | None], groups: int, law_m: float) -> None:
@@ -104,15 +104,15 @@ class CycleBandit:
         return group
 
     def earn(self, reward_m: float) -> None:
-        """Note the reward of the step that was taken."""
+        """Add the reward of the last step, if that is in the second half of the block."""
         if self._taken > self._length // 2:
             self._judged_m += reward_m
 
     def choose(self, policy: int, last_group: int) -> int:
-        """Judge the policy whose block has ended, and return the one that decides next.
+        """Judge the policy whose block has ended, and return the policy of the next block.
 
         Args:
-            policy: that decided in the block.
+            policy: the policy of the block that has ended.
             last_group: the group that moved last.
         """
         if self._length == 0:
@@ -132,7 +132,7 @@ class CycleBandit:
         return self._begin(self.kept, length, last_group)
 
     def restart(self, policy: int, last_group: int) -> None:
-        """Forget what policies earned, as something has changed; the one that decides goes on."""
+        """Drop all rewards after a change of the robot or the ground; `policy` continues."""
         self.kept, self._rewards_m[:] = policy, np.nan
         self._kept_steps = self._least(policy)
         self._begin(policy, self._least(policy), last_group)

@@ -2,8 +2,8 @@
 
 The paper names an "informed search with a reasonable heuristic" as future work. The heuristic here
 is the kinematic law of a step (`hexapods.domain.feet`): the body's displacement if no foot slips
-and no joint gives way, computed from where the feet are. What the simulator answers corrects it:
-their difference, the residual, is learned by Bayesian linear regression.
+and no joint gives way, computed from where the feet are. The difference between a simulated reward
+and the law, the residual, is learned by Bayesian linear regression.
 """
 
 from collections.abc import Sequence
@@ -22,9 +22,9 @@ LAYER_WEIGHTS = (2, 3, 3)
 BUDGET_PER_LAYER = 20
 """A budget of 20 transitions pays for a second layer, one of 40 for a third."""
 PROMISING = 24
-"""So many actions of a node, those with the highest predicted rewards, are looked at further."""
+"""Number of actions of a node that become candidates, those with the highest predicted rewards."""
 PRIOR_DEVIATION_M, NOISE_DEVIATION_M = 0.005, 0.002
-"""Of a weight of the residual before anything was simulated, and of a reward around the model."""
+"""Deviations: of the prior of a weight of the residual, and of a reward about the model."""
 
 
 class Informed(Search):
@@ -73,9 +73,10 @@ class Informed(Search):
             offsets_m = np.array(sequence.node.offsets_m)
             actions = np.array(sequence.node.legal)
             rewards, ends = self._model.predict(offsets_m, actions)
-            some = np.argsort(-rewards, kind="stable")[:PROMISING]
-            values = sequence.sum_m + rewards[some] + self._model.best_rewards(ends[some])
-            for index, value in zip(some, values, strict=True):
+            promising = np.argsort(-rewards, kind="stable")[:PROMISING]
+            after = self._model.best_rewards(ends[promising])
+            values = sequence.sum_m + rewards[promising] + after
+            for index, value in zip(promising, values, strict=True):
                 action = sequence.node.legal[index]
                 candidates.append(_Candidate(float(value), sequence, action, offsets_m))
         return sorted(candidates, key=lambda candidate: -candidate.value_m)
@@ -116,11 +117,11 @@ class _Candidate(NamedTuple):
     sequence: _Sequence
     action: Action
     offsets_m: FloatArray
-    """Of the feet before the step, (groups, 2)."""
+    """Offsets of the feet before the step, (groups, 2)."""
 
 
 def shares_of(budget: int) -> list[int]:
-    """Return how many transitions of a budget each layer of the tree gets."""
+    """Return the number of transitions of a budget for each layer of the tree."""
     weights = LAYER_WEIGHTS[: 1 + budget // BUDGET_PER_LAYER]
     total = sum(weights)  # whole numbers
     ends = [budget * weight // total for weight in accumulate(weights, initial=0)]
@@ -131,9 +132,9 @@ class RewardModel:
     """Reward of a step: the kinematic law, plus a linear residual that is learned.
 
     The features are: which group lands on which cell; the cells nearest to all groups once it has
-    landed; where it comes from; and, for the group that moves, the offsets of all groups. Weights
-    are independent and normal beforehand, with mean 0: the law alone predicts until something is
-    known. Sums are taken row by row, so that a prediction does not depend on how many are made at
+    landed; where it comes from; and, for the group that moves, the offsets of all groups. The prior
+    of the weights is independent and normal with mean 0: without data the law alone predicts. Sums
+    are taken row by row, so that a prediction does not depend on how many are made at
     once.
     """
 
@@ -145,8 +146,8 @@ class RewardModel:
         group, cell = np.divmod(np.arange(self._groups * self._cells), self._cells)
         self._actions = np.column_stack([group, cell])
         start = np.zeros((self._groups, 2))
-        some = self._actions[:1]
-        count = self._features(start, self._land(start, some), some).shape[1]
+        action = self._actions[:1]
+        count = self._features(start, self._land(start, action), action).shape[1]
         deviation_m = np.full(count, PRIOR_DEVIATION_M)
         self._residual = BayesianRegression(np.zeros(count), deviation_m, NOISE_DEVIATION_M)
 
@@ -219,8 +220,8 @@ class RewardModel:
         comes_from[rows, group] = before[rows, group] / self._unit_m
         stance = np.zeros((count, self._groups, self._groups, 2))
         stance[rows, group] = landed_m / self._unit_m
-        parts = (np.ones(count), lands, cells, comes_from, stance)
-        return np.concatenate([columns.reshape(count, -1) for columns in parts], axis=1)
+        blocks = (np.ones(count), lands, cells, comes_from, stance)
+        return np.concatenate([columns.reshape(count, -1) for columns in blocks], axis=1)
 
     def _nearest(self, offsets_m: FloatArray) -> IntArray:
         """Return the cell nearest to each offset, (…, 2)."""

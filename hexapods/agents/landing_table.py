@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.agents.table_rows import NOT_RISING, Part
+from hexapods.agents.table_rows import NOT_RISING, Chunk
 from hexapods.agents.value_table import ValueTable, legal_columns
 from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.types import Action, Cells, FloatArray, IntArray
@@ -107,19 +107,19 @@ class LandingTable(ValueTable):
 
     def rows(self) -> Iterator[tuple[Cells, float, int]]:
         """Yield all landings in order, with value and visits."""
-        return LandingRows(self.groups, self.cells, self._parts).rows()
+        return LandingRows(self.groups, self.cells, self._chunks).rows()
 
     def sha256(self) -> str:
         """Return the SHA-256 of the values as little-endian float64."""
-        return LandingRows(self.groups, self.cells, self._parts).sha256()
+        return LandingRows(self.groups, self.cells, self._chunks).sha256()
 
-    def _parts(self) -> Iterator[Part]:
+    def _chunks(self) -> Iterator[Chunk]:
         landings = np.flatnonzero((self._visits > 0) | (self._values != 0))
         yield landings, self._values[landings], self._visits[landings]
 
     def dump(self) -> dict[str, NDArray[Any]]:
         """Return the landings that were visited or have a value, ascending, and the shape."""
-        (columns,) = self._parts()
+        (columns,) = self._chunks()
         return {
             "shape": np.array([self.groups, self.cells]),
             **dict(zip(LANDING_ARRAYS, columns, strict=True)),
@@ -140,16 +140,16 @@ class LandingTable(ValueTable):
 class LandingRows:
     """Rows of a landing table's sparse form, read in chunks: one a landing, in order."""
 
-    def __init__(self, groups: int, cells: int, parts: Callable[[], Iterator[Part]]) -> None:
+    def __init__(self, groups: int, cells: int, chunks: Callable[[], Iterator[Chunk]]) -> None:
         """Store the source; reading starts with the iteration.
 
         Args:
             groups: number of groups of legs.
             cells: number of cells of the foot grid.
-            parts: starts an iteration over the chunks of the sparse form, in order.
+            chunks: starts an iteration over the chunks of the sparse form, in order.
         """
         self.groups, self.cells = groups, cells
-        self._parts = parts
+        self._chunks = chunks
 
     def rows(self) -> Iterator[tuple[Cells, float, int]]:
         """Yield all landings in order, with value and visits; 0 of those that are not stored."""
@@ -169,7 +169,7 @@ class LandingRows:
 
     def _stored(self) -> Iterator[tuple[int, float, int]]:
         before = -1
-        for columns in self._parts():
+        for columns in self._chunks():
             for row in zip(*(array.tolist() for array in columns), strict=True):
                 if row[0] <= before:
                     raise TableMismatch(NOT_RISING)
@@ -179,8 +179,8 @@ class LandingRows:
     def sha256(self) -> str:
         """Return the SHA-256 of the values as little-endian float64."""
         values = np.zeros(self.cells**self.groups, "<f8")
-        for landings, some, _ in self._parts():
-            values[landings] = some
+        for landings, stored_values, _ in self._chunks():
+            values[landings] = stored_values
         return hashlib.sha256(values.data).hexdigest()
 
 

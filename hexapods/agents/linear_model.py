@@ -51,33 +51,33 @@ Optimism = Annotated[
 _TURNS = 2
 """Turns of every group for which a policy decides: six steps of a robot with three groups."""
 _UNTRIED, _UNTRIED_MEASURED = 1.0, 0.5
-"""Reward per step that a policy is expected to earn before it was tried, counted as one step, as a
-share of the best possible without slip, so that orders are tried early: they cost little where they
-are no better. A policy by measured cells has much to learn at first, and is tried where others
-fail."""
+"""Expected reward per step of an untried policy, counted as one step, as a share of the best
+possible without slip, so that orders are tried early: that costs little where they are no better.
+The policy by measured cells needs many steps to learn, and is tried where the others earn
+little."""
 _FAST, _SLOW = 1 / 4, 1 / 40
 """Weights of the newest squared error in the short and the long moving average."""
 _CHANGE_RATIO, _CHANGE_LEAST = 4.0, 4.0
 """A change is noticed where the short average exceeds the long one by this ratio, and the noise's
 variance by that one."""
 _KEPT = 0.1
-"""Share of the evidence that remains after a change."""
+"""Share of the evidence that remains after a noticed change."""
 
 
 class LinearModel:
     """Bayesian linear models of the reward by two experts, one for each reading of the state.
 
-    Both learn from every step. One of several policies decides, for two turns of all groups at a
-    time: the one whose steps paid most lately. Two follow the plan, and let the groups take turns
-    in one order or the other, which one step's reward does not tell apart (of two groups there is
-    one order); the last follows the measured cells. A policy takes the action with the highest mean
-    plus `optimism` posterior deviations (LinUCB). Where errors of prediction rise suddenly, most of
-    the evidence is forgotten, which makes it explore again. It makes no random choices: ties go to
-    the first action in `legal`.
+    Both learn from every step. One of several policies chooses the actions, for two turns of all
+    groups at a time: the policy with the highest recent reward. Two follow the plan, and let the
+    groups take turns in one order or the other, which have equal rewards in a single step (two
+    groups have one order); the last follows the measured cells. A policy takes the action with the
+    highest mean plus `optimism` posterior deviations (LinUCB). Where errors of prediction rise
+    suddenly, most of the evidence is forgotten, which makes it explore again. It makes no random
+    choices: ties go to the first action in `legal`.
 
     Args:
         problem: number of groups, and the cells' displacements.
-        observe: reads the plan of the feet beside the run's observation.
+        observe: reads measured cells and planned offsets, whatever the run's observation is.
         explore: if False, an action is chosen by the mean alone.
         prior: the prior mean of the reward: 0, or what the kinematic law predicts.
         optimism: β, the weight of the posterior's standard deviation.
@@ -123,20 +123,20 @@ class LinearModel:
         legs = sum(sizes)  # whole numbers
         squares = sum(size * size for size in sizes) / (legs * legs)  # whole numbers
         self._law_m = 2 * self._half_side_m / (groups * (1 + squares))
-        """Advance per step of the steady walk without slip."""
+        """Advance per step of the steady walk without slip [m]."""
         self._bandit = CycleBandit([*cycles, None], groups, self._law_m) if cycles else None
         self._deciding, self._decided, self._last_group = 0, 0, groups - 1
         self._earned: FloatArray = np.zeros((len(self._policies), 2))
-        """Discounted steps that each policy decided, and the rewards [m] in them."""
+        """Discounted number of steps of each policy, and their discounted rewards [m]."""
         self._noise_variance = (NOISE * self._half_side_m) ** 2
         self._errors: FloatArray = np.array([[0.0, self._noise_variance]] * len(self._experts))
         """Short and long moving average of each expert's squared errors [m²]."""
         self._predicted: FloatArray = np.zeros(len(self._experts))
-        """Rewards [m] that each expert predicted since a frozen copy last chose a policy."""
+        """Rewards [m] predicted by each expert since a frozen copy last chose a policy."""
         self._before = self._read()
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
-        """Return the action with the highest upper confidence bound, by the policy that decides."""
+        """Return the action with the highest upper confidence bound of the current policy."""
         return self._choose(legal)[0]
 
     def explain_choice(
@@ -159,9 +159,9 @@ class LinearModel:
         return ChoiceExplanation(action, "exploited", criterion, scores)
 
     def _choose(self, legal: Sequence[Action]) -> tuple[Action, Sequence[Action], FloatArray]:
-        """Return an action, those from which it is chosen, and their upper confidence bounds [m].
+        """Return an action, the allowed actions, and their upper confidence bounds [m].
 
-        The policy that decides is chosen first, if it is time to.
+        Where a block has ended, the next policy is chosen first.
         """
         self._before = self._read()
         if self._bandit is not None and self._explore:
@@ -184,7 +184,7 @@ class LinearModel:
         return best, allowed, bounds_m
 
     def learn(self, transition: Transition) -> None:
-        """Update both experts' posteriors, and the record of the policy that decided."""
+        """Update both experts' posteriors, and the rewards of the current policy."""
         action, reward = transition.action, transition.reward_m
         errors = (reward - self._predictions(action)) ** 2
         for expert in self._experts:
@@ -203,7 +203,7 @@ class LinearModel:
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how both experts' expectations change.
 
-        The rule is the expectation of the step's reward, by the expert that decided, after it.
+        The rule is the expected reward of the step after the update, by the policy's expert.
         """
         before = [self._belief(expert, transition.action) for expert in self._experts]
         self.learn(transition)
@@ -229,7 +229,7 @@ class LinearModel:
         return UpdateExplanation(summary, update, (), beliefs)
 
     def _belief(self, expert: Expert, action: Action) -> tuple[float, float]:
-        """Return the reward of the last step that an expert expects, and its deviation [m]."""
+        """Return an expert's expected reward of the last step, and its standard deviation [m]."""
         features = expert.features(self._before, [action])
         return float(expert.model.expected(features)[0]), float(expert.model.deviation(features)[0])
 
@@ -241,10 +241,10 @@ class LinearModel:
         return np.array([expert.expected_m(self._before, [action])[0] for expert in self._experts])
 
     def _choose_policy(self) -> None:
-        """Let the policy decide that earned most lately; untried ones are estimated optimistically.
+        """Choose the policy with the highest recent reward; untried ones are rated optimistically.
 
-        A frozen copy is told no rewards. It keeps its policy, unless that treads on the spot: in a
-        cycle of cells that it values, where the plan predicts hardly any advance.
+        A frozen copy gets no rewards. It keeps its policy, unless that steps on the spot: in a
+        cycle of cells with high values, for which the plan predicts hardly any advance.
         """
         if self._explore:
             self._deciding = self._best_policy(self._policies, optimistic=True)
@@ -256,16 +256,16 @@ class LinearModel:
         self._predicted = np.zeros_like(self._predicted)
 
     def _best_policy(self, policies: Sequence[ExpertPolicy], optimistic: bool) -> int:
-        """Return the index of the first policies that earned most per step.
+        """Return the index of the policy with the highest reward per step.
 
-        Each record is completed by one step with the reward expected before any, or with none.
+        One step is added to each: with an untried policy's reward if `optimistic`, else with 0.
         """
         steps, rewards = self._earned[: len(policies)].T
         untried = np.array([policy.untried * self._law_m for policy in policies])
         return int(((rewards + optimistic * untried) / (steps + 1)).argmax())
 
     def _has_changed(self) -> bool:
-        """Whether the errors of all experts have risen above what they were for long."""
+        """Whether the recent errors of all experts exceed their long-term average."""
         short, long = self._errors.T
         risen = (short > _CHANGE_RATIO * long) & (short > _CHANGE_LEAST * self._noise_variance)
         return self._decided > 2 * self._block_steps and bool(risen.all())
@@ -298,7 +298,7 @@ class LinearModel:
         return _without_illegal(self._visits.astype(float), observation)
 
     def state(self) -> AgentState:
-        """Return the evidence, the experts' records, visits and optimism."""
+        """Return the evidence, the policies' rewards, the experts' errors, visits and optimism."""
         evidence: AgentState = {}
         for expert in self._experts:
             evidence[f"{expert.name}_moments"] = expert.model.moments.copy()
@@ -345,7 +345,7 @@ class LinearModel:
             self._optimism = self._tuned_optimism
         if self._bandit is not None:
             self._bandit.load(state)
-        if not self._explore:  # a walk of its own, from rest
+        if not self._explore:  # a new walk, from rest
             self._deciding, self._decided = self._best_policy(self._policies, optimistic=False), 0
             if self._bandit is not None:
                 self._deciding = self._bandit.walk_from_rest()

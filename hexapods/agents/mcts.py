@@ -24,22 +24,22 @@ class _TreeNode:
 
     node: Node
     reward_m: float = 0.0
-    """Of the step that leads here."""
+    """Reward of the step that leads to this node."""
     visits: int = 0
     total_m: float = 0.0
-    """Sum of the returns of the sequences that came through."""
+    """Sum of the returns of the sequences through this node."""
     children: dict[Action, "_TreeNode"] = field(default_factory=dict)
 
 
 class Mcts(Search):
-    """Agent that simulates random sequences of steps, more of those that begin well.
+    """Agent that simulates random sequences of steps, more of those with promising first steps.
 
-    Each sequence has `HORIZON` steps, with a small budget fewer, so that two first steps at least
+    Each sequence has `HORIZON` steps, with a small budget fewer, so that at least two first steps
     are compared: through the tree by the upper confidence bound of their returns, which are
     normalised to the range seen so far in the decision, then at random. Steps are deterministic, so
-    each is simulated once and kept: a sequence costs only what is new in it. The last, which the
-    budget may cut short, counts by its mean reward. The action that most sequences began with is
-    taken; ties go to the higher mean return. The tree is not kept for the next decision.
+    each is simulated once and stored: a sequence costs only its new steps. The last sequence, which
+    the budget may cut short, counts by its mean reward. The action with which most sequences began
+    is taken; ties go to the higher mean return. Each decision builds a new tree.
 
     Args:
         expand: simulates the transitions.
@@ -58,11 +58,11 @@ class Mcts(Search):
         self._horizon = max(1, min(HORIZON, budget // 2))
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
-        """Return the action that most of the simulated sequences began with."""
+        """Return the action with which most of the simulated sequences began."""
         root = _TreeNode(self._expand.here)
         self._left = self._budget
         self._lowest, self._highest = math.inf, -math.inf
-        # Once all sequences are known, further ones cost nothing: their number is limited too.
+        # Sequences without a new step cost nothing, so that their number is limited too.
         for _ in range(self._budget):
             if self._left <= 0:
                 break
@@ -78,15 +78,15 @@ class Mcts(Search):
 
     def _simulate(self, root: _TreeNode) -> None:
         """Simulate one sequence of steps, and add its return to all nodes on its way."""
-        path, tree_node, is_known = [root], root, True
+        path, tree_node, is_in_tree = [root], root, True
         while len(path) <= self._horizon:
             untried = [
                 action for action in tree_node.node.legal if action not in tree_node.children
             ]
-            if untried and is_known:
-                is_known = False
+            if untried and is_in_tree:
+                is_in_tree = False
                 action = self._random(untried)
-            elif is_known:
+            elif is_in_tree:
                 action = self._most_promising(tree_node)
             else:
                 action = self._random(tree_node.node.legal)
@@ -97,7 +97,7 @@ class Mcts(Search):
             tree_node = tree_node.children[action]
             path.append(tree_node)
         stretch = self._horizon / (len(path) - 1)  # over 1 if the budget cut it short
-        total_m = stretch * ordered_sum(tree_node_.reward_m for tree_node_ in path)
+        total_m = stretch * ordered_sum(visited.reward_m for visited in path)
         self._lowest, self._highest = min(self._lowest, total_m), max(self._highest, total_m)
         for visited in path:
             visited.visits += 1

@@ -43,10 +43,10 @@ class ValueIterationResult(NamedTuple):
 
 @dataclass(frozen=True)
 class UniformTransitions:
-    """Transitions to any state of the problem with the same probability, also to unseen ones.
+    """Transitions to any state of the problem with the same probability, also to unseen states.
 
     Attributes:
-        probabilities: of such a transition, for each pair of the model.
+        probabilities: probability of such a transition for each pair of the model.
         unseen_reward_m: the best reward in a state that was never seen [m].
         states: number of states of the problem.
     """
@@ -60,30 +60,30 @@ class ModelArrays:
     """A model as arrays, for sums over all of its pairs at once.
 
     Attributes:
-        states: indices of the states in it, ascending; "place" is a position in this array.
+        states: indices of the model's states, ascending; "place" is a position in this array.
         places: place of each pair's state.
         columns: column of each pair.
         tries: how often each pair was tried.
         rewards_m: mean reward of each pair [m].
-        outcome_pairs, outcome_places, outcome_counts: of each outcome the number of the pair, the
-            place of the next state, and how often it came.
+        outcome_pairs, outcome_places, outcome_counts: number of the pair, place of the next state
+            and count of each outcome.
         untried: number of legal actions of each state that were never tried.
     """
 
     def __init__(self, model: TabularModel, groups: int, cells: int) -> None:
         pairs = model.pairs
         outcomes = [pair.outcomes for pair in pairs]
-        at = np.array([pair.state for pair in pairs], np.int64)
-        after = np.fromiter(chain.from_iterable(outcomes), np.int64)
-        self.states: IntArray = np.unique(np.concatenate([at, after]))
-        self.places = np.searchsorted(self.states, at)
+        pair_states = np.array([pair.state for pair in pairs], np.int64)
+        next_states = np.fromiter(chain.from_iterable(outcomes), np.int64)
+        self.states: IntArray = np.unique(np.concatenate([pair_states, next_states]))
+        self.places = np.searchsorted(self.states, pair_states)
         self.columns = np.array([pair.column for pair in pairs], np.int64)
         self.tries = np.array([pair.tries for pair in pairs], np.int64)
         self.rewards_m = np.array([pair.mean_reward_m for pair in pairs], float)
         # NumPy takes counts of its index type alone, which has 32 bits on some machines.
-        ways = np.array([len(successors) for successors in outcomes], np.intp)
-        self.outcome_pairs = np.repeat(np.arange(len(pairs)), ways)
-        self.outcome_places = np.searchsorted(self.states, after)
+        outcomes_of_pairs = np.array([len(successors) for successors in outcomes], np.intp)
+        self.outcome_pairs = np.repeat(np.arange(len(pairs)), outcomes_of_pairs)
+        self.outcome_places = np.searchsorted(self.states, next_states)
         counts = chain.from_iterable(successors.values() for successors in outcomes)
         self.outcome_counts = np.fromiter(counts, np.int64)
         tried = np.bincount(self.places, minlength=len(self.states))
@@ -143,11 +143,11 @@ def _mean(states: FloatArray, unseen: float, count: int) -> float:
 
 
 class ModelAgent(TabularAgent):
-    """Learner that explores by planning in a model of its own, without random steps.
+    """Learner that explores by planning in a learned model, without random steps.
 
-    `table` holds the values of the plan that is best if the world is on average what it has seen
-    so far; evaluations and races follow it. Untried actions are worth 0 in it, as in a new table.
-    A subclass explores by another plan of its own.
+    `table` holds the values of the best plan in the mean of the steps so far; evaluations and races
+    follow it. Untried actions are worth 0 in it, as in a new table. A subclass explores by another
+    plan.
 
     Args:
         rng: random generator, the only source of chance.
@@ -176,7 +176,7 @@ class ModelAgent(TabularAgent):
 
     @property
     def table(self) -> ValueTable:
-        """Visits, and the values of the best plan for the mean of what was seen."""
+        """Visits, and the values of the best plan in the mean of the steps so far."""
         if self._is_table_due:
             self._plan_for_mean()
         return self._table
@@ -249,7 +249,7 @@ class ModelAgent(TabularAgent):
         """
 
     def _beliefs(self, state: int, column: int) -> list[Belief]:
-        """Return what the model believes of a pair now; the values after are not yet known."""
+        """Return the model's estimates of a pair, as they are now, for before and after."""
         number = self._model.number(state, column)
         pair = None if number is None else self._model.pairs[number]
         tries, mean = (0, 0.0) if pair is None else (pair.tries, pair.mean_reward_m)
@@ -280,7 +280,7 @@ class ModelAgent(TabularAgent):
     def _load_learned(self, state: AgentState) -> None:
         self._table.load(state)
         self._model.load(state)
-        # Its values were planned with the discount of another run.
+        # The values were planned with the discount of another run.
         self._is_table_due = True
 
     @staticmethod

@@ -1,9 +1,10 @@
 """Generalising learner for bodies that tip: a multilevel model of the reward, and a plan with it.
 
 Where a body tips onto the feet that swing, what a step earns depends on which group moved and where
-it came from, not only on where the feet stand after landing. The model tells these apart, and
-learns from every step about all that are alike. Sources: partial pooling (Gelman and Hill 2007),
-optimism by posterior deviations (Li et al. 2010), value iteration (Sutton & Barto 2018, §4.4).
+it came from, not only on where the feet stand after landing. The model has a level for each, and
+learns from every step about all pairs with the same landing. Sources: partial pooling (Gelman and
+Hill 2007), optimism by posterior deviations (Li et al. 2010), value iteration (Sutton & Barto 2018,
+§4.4).
 """
 
 from collections.abc import Sequence
@@ -32,20 +33,20 @@ from hexapods.domain.types import Action, Cells, FloatArray, IntArray
 MAX_PAIRS = 30_000
 """Maximum of state-action pairs: after each step the model plans for all of them."""
 _LAW_TRIES = 0.3
-"""Tries for which the law of a step without slip counts, where next states are expected."""
+"""Weight, in tries, of the next state by the law of a step without slip."""
 _TOLERANCE = 1e-3
 """Value iteration ends when no state's value changes by more, as a share of half the side."""
 _MAX_SWEEPS = 300
 
 
 class _Plan(NamedTuple):
-    """Values by value iteration, and what they are made of [m].
+    """Values by value iteration, and their components [m].
 
     Attributes:
         levels: posterior of the rewards.
-        later: expected value of what follows each pair, (pairs,).
+        later: expected value of the state after each pair, (pairs,).
         values: mean + β · deviation + γ · later, (pairs,).
-        state_values: the highest of each state, (states,).
+        state_values: the highest value of each state, (states,).
     """
 
     levels: tuple[Level, ...]
@@ -59,8 +60,8 @@ class MultilevelModel:
 
     It takes the step with the highest value in a plan by value iteration, in which a step earns its
     expected reward plus β standard deviations. The states that follow are counted by landing and
-    mover; where there are few, the law of a step without slip says what follows. It makes no random
-    choices: ties go to the first action in `legal`. It forgets nothing.
+    mover; where there are few, the law of a step without slip predicts them. It makes no random
+    choices: ties go to the first action in `legal`. No evidence is discounted.
 
     Args:
         problem: number of groups, and the cells' displacements.
@@ -97,7 +98,7 @@ class MultilevelModel:
         self._tries: IntArray = np.zeros(self._layout.pairs, np.int64)
         self._reward_sums_m: FloatArray = np.zeros(self._layout.pairs)
         self._next: dict[tuple[int, int], int] = {}
-        """How often each state followed, by landing with mover and the state."""
+        """Number of times that each state followed, by (landing with mover, state)."""
         self._first_values: FloatArray = np.zeros(self._layout.states)
         """Values of the states with which the next value iteration begins [m]: those of the plan
         for the last step. A plan follows from them and the evidence alone."""
@@ -131,7 +132,7 @@ class MultilevelModel:
         self._planned = None
 
     def explain_update(self, transition: Transition) -> UpdateExplanation:
-        """Learn as `learn` does, and explain how what it expects changes, level by level.
+        """Learn as `learn` does, and explain how the expected rewards change, level by level.
 
         The rule is the value of the step in the plan after it.
         """
@@ -259,7 +260,7 @@ class MultilevelModel:
         return row
 
     def state(self) -> AgentState:
-        """Return the evidence, where its next plan begins, and what was tuned."""
+        """Return the evidence, the first values of the next plan, and tuned settings."""
         return {
             "shape": np.array([self._layout.groups, self._layout.cells], np.int64),
             "tries": self._tries.copy(),
@@ -270,7 +271,7 @@ class MultilevelModel:
         }
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned, but not what was tuned.
+        """Load what was learned, but not tuned settings.
 
         Raises:
             ValueError: if it is of another number of groups or cells.

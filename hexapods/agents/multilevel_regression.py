@@ -3,8 +3,8 @@
 A Bayesian multilevel model with partial pooling (Gelman and Hill 2007, chapter 12) of four levels,
 each a correction of the coarser one: a linear model of the cells on which the feet stand after
 landing; the landing, which is all of these cells; the landing with the group that moved; and the
-state-action pair, which says also where that group came from. What was tried often is believed for
-itself, and what was never tried is expected to be as the coarser levels say.
+state-action pair, which says also where that group came from. A member that was tried often has
+nearly its own mean reward, and one that was never tried the expectation of the coarser levels.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ _NOISE, _CELL, _LANDING, _MOVER, _PAIR = 0.1, 1.0, 0.2, 0.2, 0.3
 
 
 class PairLayout:
-    """State-action pairs of a problem and what they have in common, by their indices.
+    """Indices of the state-action pairs of a problem, and of the coarser members they belong to.
 
     The index of a state is that of its row in a Q-table; that of a pair is its state's index times
     the number of actions, plus the action's column. Pairs that stay on their cell are illegal, and
@@ -57,7 +57,7 @@ class PairLayout:
         return index
 
     def members(self, pair: int) -> tuple[int, int, int, int]:
-        """Return where a pair belongs in each of the four levels, from the coarsest."""
+        """Return a pair's member of each of the four levels, the coarsest first."""
         landing = int(self.landings[pair])
         return landing, landing, int(self.movers[pair]), pair
 
@@ -87,23 +87,23 @@ class Level(NamedTuple):
 
 
 class _Evidence(NamedTuple):
-    """What the steps below say of the rewards that a level expects.
+    """Evidence of the steps about the rewards of a level's members.
 
     Attributes:
-        precision: of their mean, one entry a member [1/m²]; 0 without a step.
-        weighted: that mean times its precision [1/m].
+        precision: precision of each member's mean reward, (members,) [1/m²]; 0 without a step.
+        weighted: that mean times its precision, (members,) [1/m].
     """
 
     precision: FloatArray
     weighted: FloatArray
 
-    def less(self, variance: float) -> "_Evidence":
-        """Return the evidence of the coarser level, from which this one differs by chance [m²]."""
+    def widened(self, variance: float) -> "_Evidence":
+        """Return the evidence about rewards that differ from these with a variance [m²]."""
         share = 1 / (1 + variance * self.precision)
         return _Evidence(share * self.precision, share * self.weighted)
 
     def summed(self, members: IntArray, count: int) -> "_Evidence":
-        """Return the evidence of a coarser level of `count` members, by the member of each."""
+        """Return the evidence of a coarser level; `members` are indices of its `count`."""
         # `bincount` adds in order, so that the last bits are the same on all machines.
         sums = (np.bincount(members, amounts, count) for amounts in self)
         return _Evidence(*(np.asarray(amounts, float) for amounts in sums))
@@ -121,7 +121,7 @@ class MultilevelRegression:
 
     Args:
         problem: number of groups and cells, and the grid's size.
-        layout: of the problem's pairs.
+        layout: indices of the problem's pairs.
     """
 
     def __init__(self, problem: Problem, layout: PairLayout) -> None:
@@ -147,10 +147,10 @@ class MultilevelRegression:
         layout = self._layout
         of_pair = _Evidence(tries / self._noise, reward_sums_m / self._noise)
         movers = layout.states * layout.groups
-        of_mover = of_pair.less(self._pair).summed(layout.movers, movers)
+        of_mover = of_pair.widened(self._pair).summed(layout.movers, movers)
         landing_of_mover = np.repeat(np.arange(layout.states), layout.groups)
-        of_landing = of_mover.less(self._mover).summed(landing_of_mover, layout.states)
-        cells = self._fitted(of_landing.less(self._landing))
+        of_landing = of_mover.widened(self._mover).summed(landing_of_mover, layout.states)
+        cells = self._fitted(of_landing.widened(self._landing))
         states = np.arange(layout.states)
         landing = of_landing.corrected("landing", cells, states, self._landing)
         mover = of_mover.corrected("landing and mover", landing, landing_of_mover, self._mover)

@@ -43,7 +43,7 @@ class NStepSarsa(TabularLearner):
         super().__init__(*args, **settings)
         self._return_steps = return_steps
         self._waiting: list[tuple[int, int, float]] = []
-        """State, column and reward [m] of the steps that are not judged yet, the newest last."""
+        """State, column and reward [m] of the steps without an update yet, the newest last."""
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Q(s, a) ← (1 − α) Q(s, a) + α (Σ γᵏ r + γⁿ Q(s′, a′)), for the pair n − 1 steps ago."""
@@ -58,7 +58,7 @@ class NStepSarsa(TabularLearner):
         self._move_towards(first_state, first_column, target)
 
     def state(self) -> AgentState:
-        """Return the state of `TabularLearner`, and the steps that are not judged yet."""
+        """Return the state of `TabularLearner`, and the steps without an update yet."""
         places = [(state, column) for state, column, _ in self._waiting]
         rewards = [reward for *_, reward in self._waiting]
         arrays = {"places": np.array(places, np.int64).reshape(-1, 2), "rewards": np.array(rewards)}

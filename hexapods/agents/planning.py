@@ -1,4 +1,4 @@
-"""Base class of learners that also learn from remembered steps (Sutton and Barto, chapter 8)."""
+"""Base class of learners that also update from a model (Sutton & Barto 2018, chapter 8)."""
 
 from typing import Annotated, Any
 

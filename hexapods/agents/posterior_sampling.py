@@ -51,12 +51,11 @@ PRIOR_WEIGHT = 0.1
 
 
 class PosteriorSampling(ModelAgent):
-    """Learner that draws a possible world by lot, and does what is best there for some steps.
+    """Learner that draws a world from the posterior and follows its best plan for some steps.
 
-    What it has seen makes some worlds more likely than others (Bayes): rewards are normally
-    distributed, with a known deviation and a normal prior of mean 0; next states have a Dirichlet
-    prior, spread evenly over all states. The more often a pair was tried the less it varies between
-    the drawn worlds, so that exploration ends by itself.
+    Rewards are normally distributed, with a known deviation and a normal prior of mean 0; next
+    states have a Dirichlet prior, spread evenly over all states. The more often a pair was tried
+    the less it varies between the drawn worlds, so that exploration ends by itself.
 
     Args:
         plan_every: steps between two draws.
@@ -81,17 +80,17 @@ class PosteriorSampling(ModelAgent):
         self._plan_every = plan_every
         self._prior_m, self._noise_m = prior_deviation_m, noise_deviation_m
         self._planned: dict[int, FloatArray] = {}
-        """Values in the drawn world [m], (actions,) by state, for states that had been seen."""
+        """Values in the drawn world [m], (actions,), by state; for states of the model then."""
         self._drawn: tuple[FloatArray, FloatArray] | None = None
         """Rewards and expected later values of the pairs in the newest world that was drawn."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
-        """Return the best action in the drawn world; a random one where none was drawn."""
+        """Return the best action in the drawn world; a random one in a state without a plan."""
         if not self._explore:
             return super().act(observation, legal)
         values = self._planned.get(self._table.index(observation))
         if values is None:
-            # Equally likely to be the best: nothing is known of any of them.
+            # All actions of an unseen state have the same prior.
             return self._any(legal)
         row, column = values.tolist(), self._table.column
         return self._highest(legal, [row[column(action)] for action in legal])

@@ -28,13 +28,13 @@ Threshold = Annotated[
 
 
 class PrioritizedSweeping(PlanningLearner):
-    """Learner that plans where it matters: first the pair whose value would change the most.
+    """Learner that plans first for the pair whose value would change the most.
 
-    A change is handed on, backwards, to the pairs that lead there. Updates are expectations over
-    all that has followed a pair, so the world may be stochastic.
+    A change is propagated backwards to the pairs that lead to it. Updates are expectations over all
+    outcomes of a pair, so the world may be stochastic.
 
     Args:
-        alpha: share of a planned change that is made; 1 as in the paper.
+        alpha: share of a planned change that is made; 1 as in the sources.
         threshold_m: θ [m].
         settings: as for `PlanningLearner`.
     """

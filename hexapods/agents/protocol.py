@@ -13,7 +13,7 @@ An agent is a class. Its constructor's parameters are passed by name (dependency
 A parameter that is declared with its limits, title and help (`hexapods.domain.settings`) is a
 setting: REST, the command line, the page and sweeps offer it. So is one without a declaration that
 is named like a setting of `TabularLearner`, such as `alpha`. Any other keeps its default.
-Attributes of the class state the rest:
+Attributes of the class declare:
 
 - `title`, `description`, `color`: its appearance;
 - `learns = False`: practice does not change it;
@@ -46,7 +46,7 @@ AgentState = dict[str, NDArray[Any]]
 
 
 class Observe(Protocol):
-    """Readings of the robot's current state: in `act` before the action, in `learn` after it."""
+    """Observations of the current state: before the action in `act`, after it in `learn`."""
 
     def __call__(self, how: Observation) -> Cells:
         """Return the observed cells, one per group."""
@@ -135,7 +135,7 @@ class Valuing(Protocol):
 
 @runtime_checkable
 class Tabular(Protocol):
-    """Agent whose greedy policy follows from a table, beside which it may have learned more.
+    """Agent whose greedy policy follows from a table; its state may hold more than that.
 
     Its `state` includes the table as its `dump` returns it.
     """
@@ -146,7 +146,7 @@ class Tabular(Protocol):
         """Share the table of another agent of this class, to evaluate it without a copy."""
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned of a state, but not its settings or schedule position."""
+        """Load what was learned from a state, but not its settings or schedule position."""
 
 
 class Node(Protocol):

@@ -7,8 +7,8 @@ from hexapods.agents.traces import TraceLearner
 class QLambda(TraceLearner):
     """Off-policy learner with eligibility traces, which end where the learner explores.
 
-    A reward is credited to earlier steps as long as greedy actions led to it: beyond an
-    exploratory one it says nothing about the greedy policy.
+    A reward is credited to earlier steps as long as greedy actions led to it: with an exploratory
+    action in between it does not belong to the greedy policy.
     """
 
     title = "Q(λ)"

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.agents.table_rows import NOT_RISING, Part, TableRows
+from hexapods.agents.table_rows import NOT_RISING, Chunk, TableRows
 from hexapods.agents.value_table import ValueTable, legal_columns
 from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.types import Action, Cells, FloatArray
@@ -78,7 +78,7 @@ class QTable(ValueTable):
         return self._q[slot], self._n[slot]
 
     def entry(self, state: int, column: int) -> tuple[int, int]:
-        """Return the state and column as they are: each pair has an entry of its own."""
+        """Return the state and column unchanged: each pair has its own entry."""
         return state, column
 
     def value(self, state: int, column: int) -> float:
@@ -96,7 +96,7 @@ class QTable(ValueTable):
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
         """Yield all states in order, with values and visits, (groups, cells), NaN illegal."""
-        return TableRows(self.groups, self.cells, self._parts).rows()
+        return TableRows(self.groups, self.cells, self._chunks).rows()
 
     @property
     def size(self) -> int:
@@ -105,27 +105,27 @@ class QTable(ValueTable):
 
     def sha256(self) -> str:
         """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal."""
-        return TableRows(self.groups, self.cells, self._parts).sha256()
+        return TableRows(self.groups, self.cells, self._chunks).sha256()
 
     def dump(self) -> dict[str, NDArray[Any]]:
         """Return the entries that were visited or have a value, sparse (see `table_rows`)."""
-        size, begin = sum(len(where) for where, _, _ in self._parts()), 0
+        size, begin = sum(len(where) for where, _, _ in self._chunks()), 0
         where, q, n = np.empty(size, np.int64), np.empty(size), np.empty(size, np.uint32)
-        for columns in self._parts():
+        for columns in self._chunks():
             end = begin + len(columns[0])
             where[begin:end], q[begin:end], n[begin:end] = columns
             begin = end
         return {"shape": np.array([self.groups, self.cells]), "where": where, "q": q, "n": n}
 
-    def _parts(self) -> Iterator[Part]:
+    def _chunks(self) -> Iterator[Chunk]:
         """Yield the entries that were visited or have a value, some rows at once."""
         states = np.flatnonzero(self._slots != _NO_SLOT)
         for first in range(0, len(states), _ROWS_AT_ONCE):
-            some = states[first : first + _ROWS_AT_ONCE]
-            slots = self._slots[some]
+            chunk = states[first : first + _ROWS_AT_ONCE]
+            slots = self._slots[chunk]
             row, column = np.nonzero((self._n[slots] > 0) | (self._q[slots] != 0))
             if len(row):
-                where = some[row] * self.actions + column
+                where = chunk[row] * self.actions + column
                 yield where, self._q[slots[row], column], self._n[slots[row], column]
 
     def values_at(self, where: NDArray[np.int64]) -> FloatArray:
@@ -151,7 +151,7 @@ class QTable(ValueTable):
             self._q[slots, columns], self._n[slots, columns] = q[rows], n[rows]
 
     def _slots_of(self, states: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return the rows of some states in the arrays; allocate those that are missing."""
+        """Return the rows of states in the arrays; allocate missing ones."""
         new = np.unique(states[self._slots[states] == _NO_SLOT])
         self._slots[new] = np.arange(self._used, self._used + len(new), dtype=np.int32)
         self._used += len(new)

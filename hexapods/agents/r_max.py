@@ -50,12 +50,12 @@ class _OptimisticPlan(NamedTuple):
 class RMax(ModelAgent):
     """Learner that takes everything unknown for the best possible: optimism under uncertainty.
 
-    A pair is unknown until it was tried m times, and is then believed for ever. The learner takes
-    the best steps of a plan in which an unknown pair earns the highest reward again and again, and
-    so goes where something is unknown, or earns well.
+    A pair is unknown until it was tried m times; then its estimates no longer change. The learner
+    takes the best steps of a plan in which an unknown pair earns the highest reward in every step,
+    and so goes where pairs are unknown, or earn well.
 
     Args:
-        max_reward_m: upper bound of the reward of a step [m]; higher ones are taken for it.
+        max_reward_m: upper bound of the reward of a step [m]; higher rewards are cut to it.
         known_after: m.
         settings: as for `ModelAgent`.
     """
@@ -74,7 +74,7 @@ class RMax(ModelAgent):
         super().__init__(*args, **settings)
         self._max_reward_m, self._known_after = max_reward_m, known_after
         self._planned: _OptimisticPlan | None = None
-        """Of the pairs of the model; None if it is out of date."""
+        """Plan for the pairs of the model; None if it is out of date."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the best action of the optimistic plan; ties are broken at random."""
@@ -138,11 +138,11 @@ class RMax(ModelAgent):
 
     @property
     def _highest_value(self) -> float:
-        """Upper bound of all values [m]: the highest reward for ever."""
+        """Upper bound of all values [m]: the highest reward in every step."""
         return self._max_reward_m / (1 - self._gamma)
 
     def _optimistic_plan(self) -> "_OptimisticPlan":
-        """Return the plan for the case that all that is unknown is the best."""
+        """Return the plan in which every unknown pair has the highest value."""
         arrays, highest = self._arrays(), self._highest_value
         is_known = arrays.tries >= self._known_after
         rewards = np.where(is_known, np.minimum(arrays.rewards_m, self._max_reward_m), highest)

@@ -168,7 +168,7 @@ def searches(name: str) -> bool:
 
 
 def compares(name: str) -> str:
-    """Return what a search compares, as its class says in `compares`; no agent is imported."""
+    """Return the quantity that a search compares, its class's `compares`; imports no agent."""
     agent_class = None if ":" in name else BUILT_IN.get(name) or registered().get(name)
     return str(getattr(agent_class, "compares", "return of its simulated sequences"))
 
@@ -183,9 +183,9 @@ def keeps_learning(name: str) -> bool:
 
 
 def is_memoryless(agent: Agent) -> bool:
-    """Whether an agent's class says that a decision follows from the present state alone.
+    """Whether an agent's class declares that a decision follows from the present state alone.
 
-    It must say so itself, since a class that is derived from it may remember something.
+    A declaration is not inherited, since a derived class may remember earlier states.
     """
     return bool(vars(type(agent)).get("is_memoryless", False))
 
@@ -206,15 +206,15 @@ def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:
 
     A parameter without a declaration that is named like one of `TabularLearner` is that setting.
     """
-    declared, usual = declared_parameters(agent), declared_parameters(TabularLearner)
+    declared, standard = declared_parameters(agent), declared_parameters(TabularLearner)
     settings = {}
     for name, parameter in parameters_of(agent).items():
         if name in declared:
             settings[name] = declared[name]
-        elif name in usual:
-            has_default = usual[name].allows(parameter.default)
-            default = parameter.default if has_default else usual[name].default
-            settings[name] = replace(usual[name], default=default)
+        elif name in standard:
+            has_default = standard[name].allows(parameter.default)
+            default = parameter.default if has_default else standard[name].default
+            settings[name] = replace(standard[name], default=default)
     return settings
 
 
@@ -249,10 +249,10 @@ def build(agent: AgentClass, offered: Mapping[str, Any]) -> Agent:
         InvalidInput: if a required parameter is not in `offered`.
     """
     parameters = parameters_of(agent).values()
-    needed = {p.name for p in parameters if p.default is p.empty}
-    if needed - set(offered):
+    required_names = {p.name for p in parameters if p.default is p.empty}
+    if missing := required_names - set(offered):
         raise InvalidInput(
-            f"an agent asks for {', '.join(sorted(needed - set(offered)))}; "
+            f"an agent asks for {', '.join(sorted(missing))}; "
             f"on offer: {', '.join(sorted(offered))}"
         )
     return agent(**{p.name: offered[p.name] for p in parameters if p.name in offered})

@@ -40,7 +40,7 @@ Budget = Annotated[
 
 
 class Search:
-    """Agent without anything to learn or to store; a subclass implements `act`.
+    """Agent that learns and stores nothing; a subclass implements `act`.
 
     Args:
         expand: simulates transitions from the present state.
@@ -54,18 +54,18 @@ class Search:
         self._futures: dict[Action, Future] = {}
 
     def futures(self) -> Sequence[Future]:
-        """Return what was found about each action that was simulated for the newest decision."""
+        """Return the reward and the return of each action simulated for the newest decision."""
         return tuple(self._futures.values())
 
     def _record_futures(
         self, firsts: Sequence[Action], sums_m: Sequence[float], steps: int
     ) -> None:
-        """Keep the highest sum of rewards for each first action; longer sequences count only.
+        """Store the highest sum of rewards for each first action, in place of shorter sequences'.
 
         Args:
             firsts: first action of each sequence.
             sums_m: sum of its rewards [m].
-            steps: their number of steps; with the first step what was known is forgotten.
+            steps: their number of steps; 1 begins a new decision.
         """
         if steps == 1:
             self._futures = {}
@@ -82,7 +82,7 @@ class Search:
         """Do nothing: the agent plans by simulation and does not learn."""
 
     def state(self) -> AgentState:
-        """Return nothing: there is nothing to keep."""
+        """Return an empty state: a search stores nothing between decisions."""
         return {}
 
     def load(self, state: AgentState) -> None:
@@ -99,7 +99,7 @@ def check_depth(depth: int, sizes: Sequence[int], actions: int) -> None:
 
     Args:
         depth: its depth.
-        sizes: transitions that it simulates for one decision, for the depths from 1 to `depth`.
+        sizes: transitions simulated for one decision, for the depths from 1 to `depth`.
         actions: number of actions in each state, for the message.
 
     Raises:

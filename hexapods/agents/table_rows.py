@@ -17,24 +17,24 @@ from hexapods.domain.types import Cells, FloatArray
 
 VALUES_AT_ONCE = 4096
 TABLE_ARRAYS = ("where", "q", "n")
-"""Names of the arrays of the sparse form beside `shape`."""
-Part = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
+"""Names of the arrays of the sparse form, without `shape`."""
+Chunk = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
 """A chunk of `where`, `q` and `n`."""
 
 
 class TableRows:
-    """Dense rows of a sparse table of `groups` groups over `cells` cells, as in `QTable`."""
+    """Iterates over the dense rows of a `QTable`'s sparse form."""
 
-    def __init__(self, groups: int, cells: int, parts: Callable[[], Iterator[Part]]) -> None:
+    def __init__(self, groups: int, cells: int, chunks: Callable[[], Iterator[Chunk]]) -> None:
         """Store the source; reading starts with the iteration.
 
         Args:
             groups: number of groups of legs.
             cells: number of cells of the foot grid.
-            parts: starts an iteration over the chunks of the sparse form, in order.
+            chunks: starts an iteration over the chunks of the sparse form, in order.
         """
         self.groups, self.cells = groups, cells
-        self._parts = parts
+        self._chunks = chunks
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
         """Iterate over all states in order, with values and visits, (groups, cells), NaN illegal.
@@ -75,8 +75,8 @@ class TableRows:
 
     def _dense(self, at_once: int) -> Iterator[tuple[FloatArray, FloatArray]]:
         """Iterate over blocks of rows: values and visits, (rows, groups, cells) each."""
-        parts, actions = self._parts(), self.groups * self.cells
-        where, q, n = next(parts, _EMPTY_PART)
+        chunks, actions = self._chunks(), self.groups * self.cells
+        where, q, n = next(chunks, _EMPTY_CHUNK)
         states: int = self.cells**self.groups
         for first in range(0, states, at_once):
             rows = min(at_once, states - first)
@@ -90,7 +90,7 @@ class TableRows:
                 where, q, n = where[count:], q[count:], n[count:]
                 if where.size:
                     break
-                where, q, n = next(parts, _EMPTY_PART)
+                where, q, n = next(chunks, _EMPTY_CHUNK)
             shape = (rows, self.groups, self.cells)
             yield values.reshape(shape), visits.reshape(shape)
 
@@ -109,4 +109,4 @@ def flat_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
 
 
 NOT_RISING = "the table's values are not in rising order of their states"
-_EMPTY_PART: Part = (np.empty(0, np.int64), np.empty(0), np.empty(0))
+_EMPTY_CHUNK: Chunk = (np.empty(0, np.int64), np.empty(0), np.empty(0))

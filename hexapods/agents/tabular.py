@@ -150,7 +150,7 @@ class TabularAgent(ABC):
         return best[0] if len(best) == 1 else self._any(best)
 
     def _any(self, actions: Sequence[Action]) -> Action:
-        """Return one of some actions at random."""
+        """Draw one of these actions, each with the same probability."""
         return actions[int(self._rng.integers(len(actions)))]
 
     @abstractmethod
@@ -178,7 +178,7 @@ class TabularAgent(ABC):
         self.table = other.table
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned only; rates are those of this run, and the ε schedule restarts."""
+        """Load what was learned; the rates are those of this run, and the ε schedule restarts."""
         self._load_learned(state)
 
     def _load_learned(self, state: AgentState) -> None:
@@ -198,8 +198,8 @@ class TabularLearner(TabularAgent):
         explore: if False, the policy is greedy in the table (ε = 0).
         alpha: learning rate α.
         gamma: discount factor γ; not used by the objective `average`.
-        objective: `discounted`: a value is a sum of discounted rewards. `average`: a value is what
-            the rewards exceed the average reward by, without end (differential Q-learning and
+        objective: `discounted`: a value is a sum of discounted rewards. `average`: a value is the
+            sum of the rewards' differences from the average reward (differential Q-learning and
             Sarsa: Wan, Naik and Sutton 2021; Sutton and Barto, 2nd edition, §10.3).
         average_rate: η; the average reward moves by η · α times each error.
         epsilon_start, epsilon_end: ε of the first and the last episode.
@@ -313,14 +313,14 @@ class TabularLearner(TabularAgent):
         gamma: Gamma | None = None,
         epsilon: Epsilon | None = None,
     ) -> None:
-        """Change rates from the next step on; a given epsilon replaces the schedule."""
+        """Change rates from the next step on; an epsilon replaces the schedule."""
         self._alpha = self._alpha if alpha is None else alpha
         self._gamma = self._gamma if gamma is None else gamma
         self._fixed_epsilon = self._fixed_epsilon if epsilon is None else epsilon
 
     def _load_learned(self, state: AgentState) -> None:
         super()._load_learned(state)
-        # A table of the objective `discounted` has none.
+        # Missing in a table of the objective `discounted`.
         (self._average_m,) = state.get("average", np.zeros(1)).tolist()
 
     def state(self) -> AgentState:
@@ -349,7 +349,7 @@ class TabularLearner(TabularAgent):
         alpha, gamma, epsilon = state["rates"].tolist()
         declare("alpha", Alpha).check(alpha)
         declare("gamma", Gamma).check(gamma)
-        # Of the objective `average` only.
+        # Missing with the objective `discounted`.
         (average,) = state.get("average", np.zeros(1)).tolist()
         if not isinstance(average, float) or not np.isfinite(average):
             raise ValueError("its average reward is no finite number")

@@ -1,4 +1,4 @@
-"""Tabular model of the world: what followed each state-action pair, as far as it was tried."""
+"""Tabular model of the world: rewards and next states of the state-action pairs that were tried."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -21,10 +21,10 @@ class TriedPair:
 
     Attributes:
         state, column: row and column of the Q-table.
-        tries: how often it was tried; 0 for one that is only imagined.
+        tries: how often it was tried; 0 for a pair that is only imagined.
         reward_sum_m: sum of its rewards [m].
-        last_reward_m, last_next, last_step: of the newest try: reward [m], index of the next state,
-            and number of steps that were learned before.
+        last_reward_m, last_next, last_step: the newest try: reward [m], index of the next state,
+            and number of steps that were learned before it.
         outcomes: how often each state came next, by its index.
     """
 
@@ -39,7 +39,7 @@ class TriedPair:
 
     @property
     def mean_reward_m(self) -> float:
-        """Mean of its rewards [m]; 0 if it was never tried."""
+        """Mean of its rewards [m]; 0 for a pair that was never tried."""
         return self.reward_sum_m / max(1, self.tries)
 
 
@@ -50,7 +50,7 @@ class TabularModel:
 
     Attributes:
         steps: number of steps it learned from.
-        pairs: what followed each pair.
+        pairs: rewards and next states of each pair.
     """
 
     def __init__(self) -> None:
@@ -76,7 +76,7 @@ class TabularModel:
         return iter(self._leading_to.get(state, ()))
 
     def imagine(self, state: int, column: int) -> None:
-        """Add an untried pair that earns nothing and changes nothing, unless it is known."""
+        """Add an untried pair without reward that stays in its state, unless the pair is there."""
         if (state, column) not in self._numbers:
             self._add(TriedPair(state, column, last_next=state))
 
@@ -100,13 +100,13 @@ class TabularModel:
         return number
 
     def dump(self) -> AgentState:
-        """Return the model as arrays: one row a pair, and one an outcome."""
+        """Return the model as arrays, with a row for each pair and for each outcome."""
         counts = [(p.state, p.column, p.tries, p.last_next, p.last_step) for p in self.pairs]
         rewards = [(p.reward_sum_m, p.last_reward_m) for p in self.pairs]
         outcomes = [
-            (number, after, count)
+            (number, next_state, count)
             for number, pair in enumerate(self.pairs)
-            for after, count in pair.outcomes.items()
+            for next_state, count in pair.outcomes.items()
         ]
         return {
             "model_steps": np.array([self.steps], np.int64),
@@ -120,11 +120,11 @@ class TabularModel:
         (self.steps,) = state["model_steps"].tolist()
         self.pairs, self._numbers, self._leading_to = [], {}, {}
         rows = zip(state["model_pairs"].tolist(), state["model_rewards"].tolist(), strict=True)
-        for (at, column, tries, last_next, last_step), (total, last) in rows:
-            self._add(TriedPair(at, column, last_next, tries, total, last, last_step))
-        for number, after, count in state["model_outcomes"].tolist():
-            self.pairs[number].outcomes[after] = count
-            self._leading_to.setdefault(after, {})[number] = None
+        for (row, column, tries, last_next, last_step), (total_m, last_m) in rows:
+            self._add(TriedPair(row, column, last_next, tries, total_m, last_m, last_step))
+        for number, next_state, count in state["model_outcomes"].tolist():
+            self.pairs[number].outcomes[next_state] = count
+            self._leading_to.setdefault(next_state, {})[number] = None
 
     @staticmethod
     def check(state: AgentState) -> None:
@@ -147,19 +147,19 @@ class TabularModel:
         ) < len(outcomes):
             raise ValueError("its model has duplicate entries")
         groups, cells = state["shape"].tolist()
-        tries, nexts, last_steps = pairs[:, 2:].T
+        tries, last_nexts, last_steps = pairs[:, 2:].T
         if (tries < 0).any() or (last_steps < 0).any() or (last_steps > steps[0]).any():
             raise ValueError("its model has negative counts, or steps beyond its total")
-        numbers, afters, counts = outcomes.T
+        numbers, next_states, counts = outcomes.T
         _check_below(numbers, count)
-        _check_below(np.concatenate([nexts, afters]), cells**groups)
+        _check_below(np.concatenate([last_nexts, next_states]), cells**groups)
         if (counts < 1).any() or (
             np.bincount(numbers.astype(np.intp), counts, count) != tries
         ).any():
             raise ValueError("its model has tries that differ from its outcomes")
 
 
-def check_problem(problem: Problem, **settings: Any) -> None:  # noqa: ARG001  # whatever they are
+def check_problem(problem: Problem, **settings: Any) -> None:  # noqa: ARG001  # of any learner
     """Check that a model of a problem would fit into memory.
 
     Raises:

@@ -58,7 +58,7 @@ class ValueTable(ABC):
 
     @abstractmethod
     def entry(self, state: int, column: int) -> tuple[int, int]:
-        """Return the state and column that name the entry of a state and an action."""
+        """Return the state and column by which the entry of a state and an action is stored."""
 
     @abstractmethod
     def value(self, state: int, column: int) -> float:

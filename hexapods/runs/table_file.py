@@ -6,7 +6,7 @@ from typing import IO, Any
 
 from hexapods.agents.landing_table import LANDING_ARRAYS, LandingRows, check_landings
 from hexapods.agents.q_table import check_size
-from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
+from hexapods.agents.table_rows import VALUES_AT_ONCE, Chunk, TableRows
 from hexapods.domain.checks import check_format
 from hexapods.domain.errors import DamagedFile, OtherFormat, TableMismatch
 from hexapods.domain.grid import FootGrid
@@ -58,12 +58,12 @@ class TableFile:
         self.table: TableRows | LandingRows
         if names == LANDING_ARRAYS:
             check_landings(*shape)
-            self.table = LandingRows(*shape, self._parts)
+            self.table = LandingRows(*shape, self._chunks)
         else:
             check_size(*shape)
-            self.table = TableRows(*shape, self._parts)
+            self.table = TableRows(*shape, self._chunks)
 
-    def _parts(self) -> Iterator[Part]:
+    def _chunks(self) -> Iterator[Chunk]:
         for first in range(0, self._slices.length(self._columns[0]), VALUES_AT_ONCE):
             end = first + VALUES_AT_ONCE
             where, q, n = (self._slices.rows(name, first, end) for name in self._columns)

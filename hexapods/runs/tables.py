@@ -23,7 +23,7 @@ from hexapods.agents.landing_table import (
 )
 from hexapods.agents.protocol import Agent, Tabular
 from hexapods.agents.q_table import check_arrays, check_size
-from hexapods.agents.table_rows import TABLE_ARRAYS, VALUES_AT_ONCE, Part, TableRows
+from hexapods.agents.table_rows import TABLE_ARRAYS, VALUES_AT_ONCE, Chunk, TableRows
 from hexapods.domain.checks import check_format
 from hexapods.domain.disturbance_documents import as_mapping
 from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
@@ -201,7 +201,7 @@ def table_of(checkpoint: Checkpoint) -> TableRows | LandingRows:
         raise TableMismatch(f"the agent {meta['agent']} keeps no Q-table")
     shape = len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"]))
 
-    def parts() -> Iterator[Part]:
+    def parts() -> Iterator[Chunk]:
         for first in range(0, len(state[names[0]]), VALUES_AT_ONCE):
             where, q, n = (state[name][first : first + VALUES_AT_ONCE] for name in names)
             yield where, q, n

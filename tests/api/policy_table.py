@@ -309,7 +309,7 @@ _notes: list[str] = []
 
 @contextmanager
 def _recorder() -> Iterator[None]:
-    """Replace routes by ones that answer at once, and limits by ones that record and refuse nothing."""
+    """Replace routes by ones that answer at once, and limits by recorders that refuse nothing."""
     take, acquire = RateLimiter.take, FairSemaphore.acquire
     request_body = memory_limit._RequestBody.__init__  # noqa: SLF001
 

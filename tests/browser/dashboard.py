@@ -159,7 +159,7 @@ class Dashboard:
 
     @property
     def headline(self) -> Locator:
-        """Headline: the state of the race or the practice in a line, or the move that is explained."""
+        """State of the race or the practice in a line, or the move that is explained."""
         return self.panel.locator("header").get_by_role("heading")
 
     @property
