@@ -74,7 +74,7 @@ def test_what_needs_an_extra_says_which_line_installs_it(installed: Path, tmp_pa
     hexapods = str(installed / "hexapods")
     data = {"HEXAPODS_DATABASE_URL": "postgresql://me@127.0.0.1:1/hexapods"}
     for extra, command, variables in (
-        ("experiments", ("experiment", "table1"), {}),
+        ("cluster", ("experiment", "table1", "--scheduler", "tcp://127.0.0.1:1"), {}),
         ("postgres", ("serve",), data),
     ):
         done = start(hexapods, *command, folder=tmp_path, **variables)

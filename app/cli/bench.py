@@ -2,9 +2,6 @@
 
 import json
 from collections.abc import Callable
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from app.cli import benchmarks
 from app.cli.options import AsJson
@@ -35,9 +32,7 @@ LIMITS = {
 }
 
 
-def bench(
-    *, as_json: Annotated[AsJson, Parameter(help="print the figures as one object")] = False
-) -> int:
+def bench(*, as_json: AsJson = False) -> int:
     """Run the benchmarks, in about a minute; figures are ratios of times of the same run."""
     steps: tuple[Callable[[], dict[str, float]], ...] = (
         benchmarks.training,

@@ -32,14 +32,7 @@ def _numbers(_: Any, tokens: Sequence[Token]) -> tuple[int, ...]:
 
 
 def benchmark(
-    agent: Annotated[
-        str,
-        Parameter(
-            name="AGENT",
-            completer=lambda _: usable_agents(),
-            help="registered name, or my.module:Agent",
-        ),
-    ],
+    agent: Annotated[str, Parameter(name="AGENT", completer=lambda _: usable_agents())],
     /,
     *,
     protocol: Annotated[
@@ -63,27 +56,12 @@ def benchmark(
             f"(default {','.join(map(str, _USUAL.budgets))}); for agents that learn",
         ),
     ] = None,
-    seeds: Annotated[
-        WholeNumber | None,
-        Parameter(help=f"seeds of each task and number of steps (default {_USUAL.seeds})"),
-    ] = None,
-    seed: Annotated[
-        WholeNumber,
-        Parameter(help="root seed; another one draws other bodies, damages and robots as built"),
-    ] = PLAIN_SEED,
-    observation: Annotated[
-        Observation, Parameter(help="how the agent reads the state")
-    ] = "measured",
+    seeds: WholeNumber | None = None,
+    seed: WholeNumber = PLAIN_SEED,
+    observation: Observation = "measured",
     workers: Workers = None,
-    out: Annotated[
-        Path | None,
-        Parameter(
-            metavar="FILE",
-            help="score file; until all is done runs are kept in FILE.runs, and the same command "
-            "goes on from there; runs of this agent that FILE has already are not repeated",
-        ),
-    ] = None,
-    as_json: Annotated[AsJson, Parameter(help="print the content of the score file")] = False,
+    out: Annotated[Path | None, Parameter(metavar="FILE")] = None,
+    as_json: AsJson = False,
     # mcts has a setting that is called like the option of the benchmark.
     **settings: Annotated[Any, AgentOptions(is_argument=True, flags={"budget": "--search-budget"})],
 ) -> int:
@@ -92,6 +70,15 @@ def benchmark(
     Each run is a training from scratch, whose policy then walks 50 steps from rest without
     exploring or learning; its score is the share of the best known walk. The exit code is 1 if a
     run failed; it counts as 0. See docs/benchmark.md.
+
+    Args:
+        agent: registered name, or my.module:Agent
+        seeds: seeds of each task and number of steps (default: those of the protocol)
+        seed: root seed; another one draws other bodies, damages and robots as built
+        observation: how the agent reads the state
+        out: score file; until all is done runs are kept in FILE.runs, and the same command goes on
+            from there; runs of this agent that FILE has already are not repeated
+        as_json: print the content of the score file
 
     Raises:
         HexapodError: if the options are not valid, or the file cannot be written.

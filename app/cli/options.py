@@ -34,7 +34,10 @@ def _whole_number(_: Any, tokens: Sequence[Token]) -> int:
 
 WholeNumber = Annotated[int, Parameter(converter=_whole_number, metavar="N")]
 AsJson = Annotated[bool, Parameter(name="--json", help="print JSON")]
-Data = Annotated[str | None, Parameter(help="data folder (default: the user's, or HEXAPODS_DATA)")]
+Data = Annotated[
+    str | None,
+    Parameter(metavar="FOLDER", help="data folder (default: the user's, or HEXAPODS_DATA)"),
+]
 RunId = Annotated[
     str, Parameter(name="RUN", help="id of the run, as listed by `hexapods runs list`")
 ]
@@ -45,11 +48,11 @@ WALKING_PROBLEM = Group("Walking problem", sort_key=(1, 0))
 Gait = Annotated[
     str,
     Parameter(
+        metavar="NAME",
         group=WALKING_PROBLEM,
         completer=lambda _: [*NAMED_GAITS],
-        help=f"{', '.join(NAMED_GAITS)}, or JSON such as "
-        '\'{"right_leg": 1, "left_leg": 2, "symmetry": "origin"}\' (or "pairs": [[1, 4], …], '
-        'or "groups": [[1, 3, 5], …])',
+        help=f"{', '.join(NAMED_GAITS)}, or JSON with `groups`, `pairs`, or `right_leg`, "
+        "`left_leg` and `symmetry`: '{\"groups\": [[1, 3, 5], [2, 4, 6]]}'",
     ),
 ]
 
@@ -62,22 +65,22 @@ class WalkOptions:
     robot: Annotated[
         str,
         Parameter(
+            metavar="NAME",
             completer=lambda _: [*PRESETS],
-            help=f"{', '.join(PRESETS)}, the name or id of a stored one, a TOML file, or "
-            "JSON with changes of a preset or stored one",
+            help=f"{', '.join(PRESETS)}, a stored robot's name or id, a TOML file, or JSON "
+            "with changes of one of these",
         ),
     ] = "stiff"
-    simulator: Annotated[SimulatorName, Parameter(help="simulator")] = "mujoco"
+    simulator: Annotated[SimulatorName, Parameter(metavar="NAME")] = "mujoco"
     world: Annotated[
         str | None,
-        Parameter(completer=lambda _: [*WORLDS], help=f"{', '.join(WORLDS)}"),
+        Parameter(metavar="NAME", completer=lambda _: [*WORLDS], help=f"{', '.join(WORLDS)}"),
     ] = None
     disturb: Annotated[
         tuple[str, ...],
         Parameter(
-            metavar="KIND:FIELD=VALUE",
-            help="disturbance, such as limp:legs=1,4:at=25:until=40; repeat for several: "
-            f"{', '.join(KINDS)}",
+            metavar="KIND:…",
+            help=f"{', '.join(KINDS)}; such as limp:legs=1,4:at=25:until=40; repeat for several",
         ),
     ] = ()
 

@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from typing import Any
 
 from cyclopts import App, CycloptsError, Parameter
+from cyclopts.help import DefaultFormatter, PanelSpec
+from rich.box import Box
 from rich.console import Console
 
 from app.cli.commands import command_paths, load
@@ -23,6 +25,8 @@ from hexapods.domain.errors import HexapodError
 from hexapods.version import __version__
 
 _HELP = ("--help", "-h")
+_FORMAT = DefaultFormatter(panel_spec=PanelSpec(box=Box("    \n" * 8), padding=(0, 0, 0, 4)))
+"""Help without lines around groups, which would also be in files and read out aloud."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -70,7 +74,8 @@ def program_of(arguments: Sequence[str] | None = None) -> App:
         help="Six-legged robots that learn to walk, and race against look-ahead search.",
         version=f"hexapods {__version__}",
         help_flags=_HELP,
-        help_format="plaintext",
+        help_format="markdown",
+        help_formatter=_FORMAT,
         default_parameter=Parameter(negative=(), allow_repeating=True, show_default=_shown),
     )
     first, *words = arguments or (None,)

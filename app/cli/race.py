@@ -34,13 +34,7 @@ def race(
     *,
     gait: Gait,
     walk: WalkOptions = _WALK,
-    observation: Annotated[
-        Observation,
-        Parameter(
-            help="how the agents of lanes read the state that have no table and say nothing else; "
-            "a trained lane uses its table's"
-        ),
-    ] = "measured",
+    observation: Observation = "measured",
     lane: Annotated[
         tuple[str, ...],
         Parameter(
@@ -51,8 +45,8 @@ def race(
             f"plans_with: {declared_fields(LaneConfig)['plans_with'].about.help}",
         ),
     ],
-    clock: Annotated[Clock, Parameter(help="clock to show")] = "paper",
-    as_json: Annotated[AsJson, Parameter(help="print config and result as JSON")] = False,
+    clock: Clock = "paper",
+    as_json: AsJson = False,
     **settings: Annotated[
         Any,
         DeclaredOptions(declared_fields(WalkingProblem), group=WALKING_PROBLEM),
@@ -62,6 +56,11 @@ def race(
     """Race agents side by side, timed under three clocks.
 
     The exit code is 1 if a lane failed.
+
+    Args:
+        observation: how the agents of lanes read the state that have no table and say nothing
+            else; a trained lane uses its table's
+        clock: clock to show
 
     Raises:
         HexapodError: if the options are not valid.

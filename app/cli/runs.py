@@ -51,21 +51,25 @@ def runs() -> App:
 
 def _list(
     *,
-    kind: Annotated[
-        str | None, Parameter(choices=tuple(run_kinds()), help="only runs of this kind")
-    ] = None,
-    state: Annotated[State | None, Parameter(help="only runs in this state")] = None,
-    tag: Annotated[str | None, Parameter(help="only runs with this tag")] = None,
-    search: Annotated[
-        str | None,
-        Parameter(help="only runs with this text in their name, id, tags or notes"),
-    ] = None,
-    sort: Annotated[Sort, Parameter(help="order")] = SORTS[0],
-    limit: Annotated[WholeNumber, Parameter(help="at most so many")] = _LIMIT,
+    kind: Annotated[str | None, Parameter(choices=tuple(run_kinds()))] = None,
+    state: State | None = None,
+    tag: str | None = None,
+    search: str | None = None,
+    sort: Sort = SORTS[0],
+    limit: WholeNumber = _LIMIT,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
-    """List runs."""
+    """List runs.
+
+    Args:
+        kind: only runs of this kind
+        state: only runs in this state
+        tag: only runs with this tag
+        search: only runs with this text in their name, id, tags or notes
+        sort: order
+        limit: at most so many
+    """
     if limit < 1:
         raise InvalidInput(f"--limit must be at least 1, not {limit}")
     with open_for_reading(read_settings(data=data)) as store:

@@ -51,23 +51,19 @@ class _SwitchOptions:
 
 def serve(
     *,
-    host: Annotated[
-        str | None, Parameter(help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")
-    ] = None,
-    port: Annotated[
-        WholeNumber | None, Parameter(help="port to bind (default 8000, or HEXAPODS_PORT)")
-    ] = None,
+    host: str | None = None,
+    port: WholeNumber | None = None,
     data: Data = None,
-    share: Annotated[
-        bool,
-        Parameter(
-            help="let the local network watch: bind every address, make a token if none is set, "
-            "print the links"
-        ),
-    ] = False,
+    share: bool = False,
     **switches: Annotated[bool, _SwitchOptions()],
 ) -> int:
     """Serve the dashboard, the API and the stage at one address, until stopped.
+
+    Args:
+        host: address to bind (default 127.0.0.1, or HEXAPODS_HOST)
+        port: port to bind (default 8000, or HEXAPODS_PORT)
+        share: let the local network watch: bind every address, make a token if none is set, print
+            the links
 
     Raises:
         InvalidInput: if the server cannot start with these options.

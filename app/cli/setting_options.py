@@ -57,7 +57,7 @@ def with_options(
     def command(*args: Any, **kwargs: Any) -> int:
         return function(*args, **kwargs)
 
-    parameters = [one for one in signature.parameters.values() if one is not last]
+    parameters = [*signature.parameters.values()][:-1]
     for source in get_args(last.annotation)[1:]:
         parameters += source.parameters(words)
     command.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
@@ -188,12 +188,14 @@ def _metavar(setting: DeclaredSetting, lists: bool) -> str:
 
 def _help(setting: DeclaredSetting, lists: bool = False) -> str:
     about, default = setting.about, setting.default
-    given = "" if default is REQUIRED or default is None else f" (default {default})"
+    # The placeholder of the option's value already says which kind of number it takes.
+    valid = re.sub(r"^a (whole )?number (of )?", "", setting.valid)
+    if default is not REQUIRED and default is not None:
+        valid = f"{valid}; default {default}"
     if lists and about.examples:
         examples = ",".join(f"{value:g}" for value in about.examples)
-        return f"such as {examples}; each {setting.valid}{given}"
-    label = f"{about.title} {about.symbol}" if about.symbol else about.title
-    return " ".join(filter(None, [f"{label}.", about.help, f"Valid: {setting.valid}{given}"]))
+        return f"such as {examples} [each {valid}]"
+    return f"{about.help} [{valid}]".lstrip()
 
 
 def reads(setting: DeclaredSetting, *, lists: bool = False) -> Converter:

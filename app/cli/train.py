@@ -40,39 +40,19 @@ def train(
     *,
     gait: Gait | None = None,
     walk: WalkOptions = _WALK,
-    observation: Annotated[
-        Observation, Parameter(group=_PRACTICE, help="how the agent reads the state")
-    ] = TrainingConfig.observation,
+    observation: Annotated[Observation, Parameter(group=_PRACTICE)] = TrainingConfig.observation,
     agent: Annotated[
         str,
         Parameter(
+            metavar="NAME",
             group=_PRACTICE,
             completer=lambda _: usable_agents(),
-            help=f"{', '.join(usable_agents())}, or my.module:Agent; `--agent NAME --help` shows "
-            "its settings",
+            help=f"{', '.join(usable_agents())}, or my.module:Agent; see `--agent NAME --help`",
         ),
     ] = TrainingConfig.agent,
-    table: Annotated[
-        str | None,
-        Parameter(name="--from", metavar="Q.NPZ", help="continue from this table"),
-    ] = None,
-    checkpoint: Annotated[
-        str | None,
-        Parameter(
-            name="--resume",
-            metavar="Q.CHECKPOINT.NPZ",
-            help="go on with a training that was interrupted, exactly where it was; only --out and "
-            "--json go with it",
-        ),
-    ] = None,
-    out: Annotated[
-        str | None,
-        Parameter(
-            metavar="Q.NPZ",
-            help="file to save the table to; interrupted by Ctrl-C, the training is kept beside "
-            "it, in Q.checkpoint.npz",
-        ),
-    ] = None,
+    table: Annotated[str | None, Parameter(name="--from", metavar="FILE")] = None,
+    checkpoint: Annotated[str | None, Parameter(name="--resume", metavar="FILE")] = None,
+    out: Annotated[str | None, Parameter(metavar="FILE")] = None,
     as_json: AsJson = False,
     **settings: Annotated[
         Any,
@@ -83,7 +63,15 @@ def train(
 ) -> int:
     """Train an agent to walk, or go on with its training, and save its table.
 
-    The exit code is 1 if what was learned cannot be evaluated, and 130 after Ctrl-C.
+    Exit code 1: what was learned cannot be evaluated. Exit code 130: Ctrl-C.
+
+    Args:
+        observation: how the agent reads the state
+        table: continue from this table
+        checkpoint: go on with an interrupted training from its checkpoint, exactly where it was;
+            only --out and --json go with it
+        out: file to save the table to, such as q.npz; a training that Ctrl-C interrupts is kept
+            in q.checkpoint.npz
 
     Raises:
         HexapodError: if the options are not valid, or a file cannot be read or written.

@@ -12,18 +12,17 @@ from app.cli.options import AsJson, WholeNumber, Workers
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class VerifyOptions:
-    """Options of `hexapods verify`, beside the file."""
+    """Options of `hexapods verify`, beside the file.
 
-    sample: Annotated[
-        WholeNumber | None,
-        Parameter(
-            metavar="RUNS",
-            help="of a benchmark, repeat only so many runs (default: all); scores are always "
-            "computed again",
-        ),
-    ] = None
+    Attributes:
+        sample: of a benchmark, repeat only so many runs (default: all); scores are always computed
+            again
+        as_json: print standings and differences
+    """
+
+    sample: Annotated[WholeNumber | None, Parameter(metavar="RUNS")] = None
     workers: Workers = None
-    as_json: Annotated[AsJson, Parameter(help="print standings and differences")] = False
+    as_json: AsJson = False
 
 
 @dataclass(frozen=True, kw_only=True)

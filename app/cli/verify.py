@@ -40,7 +40,7 @@ def verify() -> App:
 
 
 def _verify(
-    file: Annotated[str, Parameter(name="FILE", help="the file")],
+    file: Annotated[str, Parameter(name="FILE", help="file to repeat")],
     /,
     options: VerifyOptions = _DEFAULTS,
 ) -> int:

@@ -12,8 +12,8 @@ GAIT = ("--gait", "tripod")
 
 
 def shown(*arguments: str, folder: Path) -> str:
-    """Return what `--help` shows of a command in a terminal of 100 columns."""
-    done = in_process(*arguments, "--help", folder=folder, COLUMNS="100")
+    """Return what `--help` shows of a command in a terminal of 80 columns."""
+    done = in_process(*arguments, "--help", folder=folder, COLUMNS="80")
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
@@ -23,7 +23,7 @@ def test_help_shows_the_settings_of_the_agents_that_are_named(tmp_path: Path) ->
     assert len(usual.splitlines()) <= 80
     assert "Settings of q-learning" in usual
     assert "--alpha" in usual
-    assert "(default 0.3)" in usual
+    assert "default 0.3]" in usual
     assert "--depth" not in usual
 
     beam = shown("train", "--agent", "beam", folder=tmp_path)

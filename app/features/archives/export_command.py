@@ -13,13 +13,16 @@ from app.settings import read_settings
 
 def export_runs(
     *run_ids: Annotated[RunId, Parameter(required=True)],
-    out: Annotated[str, Parameter(metavar="RUN.ZIP", help="archive to write")],
+    out: Annotated[str, Parameter(metavar="RUN.ZIP")],
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
     """Write runs that have ended, with all their files, to one archive, for another machine.
 
     It works beside a running server.
+
+    Args:
+        out: archive to write
 
     Raises:
         HexapodError: if a run does not exist or has not ended, or the file cannot be written.

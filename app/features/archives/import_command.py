@@ -15,7 +15,7 @@ from hexapods.runs.config import usable_agents
 
 
 def import_archive(
-    file: Annotated[str, Parameter(name="RUN.ZIP", help="archive written by `hexapods export`")],
+    file: Annotated[str, Parameter(name="RUN.ZIP")],
     /,
     *,
     data: Data = None,
@@ -24,6 +24,9 @@ def import_archive(
     """Import the runs of an archive that `hexapods export` wrote, all or none.
 
     Nothing of the file is believed before it is checked; see docs/operations.md.
+
+    Args:
+        file: archive written by `hexapods export`
 
     Raises:
         HexapodError: if the file is not a valid archive, or a run cannot be stored.

@@ -24,7 +24,13 @@ _SETTINGS = declared_fields(TrainingConfig)
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class WorldOptions:
-    """Options that some experiments take."""
+    """Options that some experiments take.
+
+    Attributes:
+        tolerance: build tolerance of the robots (league, recovery), as a fraction (default 0.03)
+        steps: steps of practice: in a league in all (default 250), in a recovery before the
+            disturbance (default 100)
+    """
 
     world: Annotated[
         tuple[str, ...],
@@ -33,13 +39,7 @@ class WorldOptions:
             help=f"one or more of {', '.join(WORLDS)}, or a disturbance such as limp:legs=1,4",
         ),
     ] = ()
-    tolerance: Annotated[
-        float | None,
-        Parameter(
-            converter=reads(_SETTINGS["tolerance"]),
-            help="build tolerance of the robots (league, recovery), as a fraction (default 0.03)",
-        ),
-    ] = None
+    tolerance: Annotated[float | None, Parameter(converter=reads(_SETTINGS["tolerance"]))] = None
     reward: Annotated[
         str | None,
         Parameter(
@@ -49,13 +49,7 @@ class WorldOptions:
     ] = None
     steps: Annotated[
         tuple[int, ...] | None,
-        Parameter(
-            converter=reads(_SETTINGS["steps"], lists=True),
-            n_tokens=1,
-            metavar="LIST",
-            help="steps of practice: in a league in all (default 250), in a recovery before the "
-            "disturbance (default 100)",
-        ),
+        Parameter(converter=reads(_SETTINGS["steps"], lists=True), n_tokens=1, metavar="LIST"),
     ] = None
 
     def fields(self) -> dict[str, Any]:
@@ -83,7 +77,7 @@ _TRIALS, _WORLDS, _EXECUTION = TrialOptions(), WorldOptions(), ExecutionOptions(
 
 
 def experiment(
-    experiment: Annotated[str, Parameter(name="EXPERIMENT", choices=_NAMES, help="which")],
+    experiment: Annotated[str, Parameter(name="EXPERIMENT", choices=_NAMES)],
     /,
     *,
     trials: TrialOptions = _TRIALS,
@@ -91,6 +85,9 @@ def experiment(
     execution: ExecutionOptions = _EXECUTION,
 ) -> int:
     """Repeat an experiment over many seeds, or go on with it from its results folder.
+
+    Args:
+        experiment: which
 
     Raises:
         HexapodError: if the options are not valid.

@@ -16,27 +16,24 @@ from hexapods.experiments.cluster import ClusterSpec
 from hexapods.runs.config import SimulatorName, usable_agents
 
 T = TypeVar("T")
+Pem = Annotated[str | None, Parameter(metavar="PEM")]
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class TrialOptions:
-    """Options of a trial grid; the experiment's defaults hold for those that are not given."""
+    """Options of a trial grid; the experiment's defaults hold for those that are not given.
 
-    agent: Annotated[
-        tuple[str, ...],
-        Parameter(
-            completer=lambda _: usable_agents(),
-            help="agents to compare, or my.module:Agent; repeat, or separate by commas",
-        ),
-    ] = ()
-    seeds: Annotated[
-        WholeNumber | None, Parameter(help="number of seeds per learner (default 30)")
-    ] = None
-    seed: Annotated[
-        WholeNumber | None,
-        Parameter(help="root seed from which all others are spawned (default 0)"),
-    ] = None
+    Attributes:
+        agent: agents to compare, or my.module:Agent; repeat, or separate by commas
+        seeds: number of seeds per learner (default 30)
+        seed: root seed from which all others are spawned (default 0)
+        simulator: simulator (default mujoco)
+    """
+
+    agent: Annotated[tuple[str, ...], Parameter(completer=lambda _: usable_agents())] = ()
+    seeds: WholeNumber | None = None
+    seed: WholeNumber | None = None
     gait: Annotated[
         tuple[str, ...],
         Parameter(
@@ -61,7 +58,7 @@ class TrialOptions:
             "(default stiff; stiff,compliant for table1)",
         ),
     ] = ()
-    simulator: Annotated[SimulatorName | None, Parameter(help="simulator (default mujoco)")] = None
+    simulator: SimulatorName | None = None
 
     def fields(self) -> dict[str, Any]:
         """Return fields of an experiment; None where nothing is given.
@@ -83,32 +80,26 @@ class TrialOptions:
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class ExecutionOptions:
-    """Options for workers or cluster, results folder and output."""
+    """Options for workers or cluster, results folder and output.
+
+    Attributes:
+        scheduler: scheduler of a Dask cluster, tcp://HOST:PORT or tls://…
+        tls_ca: CA, for a tls:// scheduler
+        tls_cert: client certificate, for a tls:// scheduler
+        tls_key: key of the client certificate, for a tls:// scheduler
+        out: folder for results and report
+        retry: also retry trials that an earlier run set aside
+        as_json: print the summary as JSON
+    """
 
     workers: Workers = None
-    scheduler: Annotated[
-        str | None,
-        Parameter(
-            metavar="ADDRESS", help="scheduler of a Dask cluster, tcp://HOST:PORT or tls://…"
-        ),
-    ] = None
-    tls_ca: Annotated[str | None, Parameter(metavar="PEM", help="CA, for a tls:// scheduler")] = (
-        None
-    )
-    tls_cert: Annotated[
-        str | None, Parameter(metavar="PEM", help="client certificate, for a tls:// scheduler")
-    ] = None
-    tls_key: Annotated[
-        str | None,
-        Parameter(metavar="PEM", help="key of the client certificate, for a tls:// scheduler"),
-    ] = None
-    out: Annotated[Path | None, Parameter(metavar="DIR", help="folder for results and report")] = (
-        None
-    )
-    retry: Annotated[bool, Parameter(help="also retry trials that an earlier run set aside")] = (
-        False
-    )
-    as_json: Annotated[AsJson, Parameter(help="print the summary as JSON")] = False
+    scheduler: Annotated[str | None, Parameter(metavar="ADDRESS")] = None
+    tls_ca: Pem = None
+    tls_cert: Pem = None
+    tls_key: Pem = None
+    out: Annotated[Path | None, Parameter(metavar="DIR")] = None
+    retry: bool = False
+    as_json: AsJson = False
 
     def cluster(self) -> ClusterSpec:
         """Return the specification of the workers or the cluster."""

@@ -16,6 +16,8 @@ from hexapods.exports.servo_files import SERVO_FILES
 from hexapods.exports.servo_map import BUILT_IN_MAPS
 from hexapods.exports.servo_walk import FRAME_S, ServoSpeed, ServoWalk, servo_walk
 
+_ENDINGS = " or ".join(f".{ending}" for ending in SERVO_FILES)
+
 
 def add_to(verbs: App) -> None:
     """Add the verb."""
@@ -36,15 +38,10 @@ def servos(
         ),
     ],
     out: Annotated[
-        str,
-        Parameter(
-            metavar="FILE.csv",
-            help="file to write, ending with "
-            f"{' or '.join(f'.{ending}' for ending in SERVO_FILES)}",
-        ),
+        str, Parameter(metavar="FILE.csv", help=f"file to write, ending with {_ENDINGS}")
     ],
-    lane: Annotated[WholeNumber, Parameter(help="lane of a race, from 0 on")] = 0,
-    slow_down: Annotated[bool, Parameter(help="scale time so that all servos can follow")] = False,
+    lane: WholeNumber = 0,
+    slow_down: bool = False,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
@@ -52,6 +49,10 @@ def servos(
 
     A servo map says where each servo is connected, and its pulse for an angle. The command says
     what the servos cannot follow at their speed, and how much slower they could.
+
+    Args:
+        lane: lane of a race, from 0 on
+        slow_down: scale time so that all servos can follow
 
     Raises:
         HexapodError: if the run, the map or the lane is not valid, a servo would get a pulse
@@ -64,8 +65,7 @@ def servos(
 
     ending = Path(out).suffix.removeprefix(".")
     if ending not in SERVO_FILES:
-        valid = " or ".join(f".{name}" for name in SERVO_FILES)
-        raise InvalidInput(f"the name of the file must end with {valid}: {out}")
+        raise InvalidInput(f"the name of the file must end with {_ENDINGS}: {out}")
     _, write = SERVO_FILES[ending]
     check_writable(out)
     with open_for_reading(read_settings(data=data)) as store:

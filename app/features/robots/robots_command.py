@@ -51,11 +51,15 @@ def robots() -> App:
 
 def list_robots(
     *,
-    hidden: Annotated[bool, Parameter(help="list hidden ones, too")] = False,
+    hidden: bool = False,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
-    """List the robots that are built in, and stored ones, each with a gait that suits it."""
+    """List the robots that are built in, and stored ones, each with a gait that suits it.
+
+    Args:
+        hidden: list hidden ones, too
+    """
     listed = [*map(_built_in, CREATURES.values())]
     try:
         with open_for_reading(read_settings(data=data)) as store:
@@ -161,13 +165,16 @@ def export_robot(
     name: RobotName,
     /,
     *,
-    out: Annotated[str, Parameter(metavar="FILE", help="file to write: .xml for MJCF, or .json")],
+    out: Annotated[str, Parameter(metavar="FILE")],
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
     """Write a robot as a model that MuJoCo opens without other files, or as a document.
 
     `hexapods robots import` stores the document elsewhere.
+
+    Args:
+        out: file to write: .xml for MJCF, or .json
 
     Raises:
         HexapodError: if the robot is not valid, or the file cannot be written.

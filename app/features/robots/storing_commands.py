@@ -29,18 +29,20 @@ Name = Annotated[str, Parameter(name="NAME", help="name or id of a stored robot"
 
 
 def import_robot(
-    file: Annotated[
-        str, Parameter(name="FILE", help="MJCF, URDF, a zip, a document, or JSON with `robot`")
-    ],
+    file: Annotated[str, Parameter(name="FILE")],
     /,
     *,
-    name: Annotated[str | None, Parameter(help="its name (default: that of the file)")] = None,
+    name: str | None = None,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
     """Store a robot from MJCF or URDF, alone or in a zip, or from a document.
 
     `hexapods robots export` writes documents.
+
+    Args:
+        file: MJCF, URDF, a zip, a document, or JSON with `robot`
+        name: its name (default: that of the file)
 
     Raises:
         HexapodError: if it cannot be read or stored.
@@ -67,11 +69,14 @@ def hide_robot(
     robot: Name,
     /,
     *,
-    undo: Annotated[bool, Parameter(help="offer it again")] = False,
+    undo: bool = False,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
     """Leave a stored robot out where robots are chosen.
+
+    Args:
+        undo: offer it again
 
     Raises:
         HexapodError: if there is none of this name, or it cannot be changed.
@@ -85,11 +90,14 @@ def rename_robot(
     robot: Name,
     /,
     *,
-    name: Annotated[str, Parameter(help="its new name")],
+    name: str,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
     """Give a stored robot another name.
+
+    Args:
+        name: its new name
 
     Raises:
         HexapodError: if there is none of this name, or it cannot be changed.
