@@ -4,7 +4,8 @@
 by which `features` add to them, `installed_features` says which there are, and `active_features`
 asks all of them; `feature_modules` finds their parts that need no server. `settings` are those of a
 server and of its features (`feature_settings`), of the kinds of `setting_fields`; `setting_checks`
-are checks of texts; `cache` is a cache of encoded answers.
+are checks of texts; `cache` is a cache of encoded answers; `answer` is the base class of records
+that the API sends.
 docs/architecture.md has a row for each package.
 
 Processes and threads:

@@ -4,10 +4,10 @@
   `robot_preview`, `replays`, `stage`, `spectators`, `events`, `options`,
   `monitoring`; `pages` and `docs`.
 - Requests: `agent_bodies`, `schemas`, `fields`, `descriptions`, `formats`.
-- Answers: `answers`, `run_views` (with kinds of runs that features add), `recorded_answers`,
-  `option_answers` (from `option_texts` and `robot_options`), `event_answers`, `curves`, `problems`
-  (RFC 9457), `templates` (web pages), `compression`; `budgeted_chunks` (of what slow clients
-  read).
+- Answers: `record_response` (returns a record), `answers`, `run_views` (with kinds of runs that
+  features add), `recorded_answers`, `option_answers` (from `option_texts` and `robot_options`),
+  `event_answers`, `curves`, `problems` (RFC 9457), `templates` (web pages), `compression`;
+  `budgeted_chunks` (of what slow clients read).
 - `contract` completes the OpenAPI document; `deps` injects services and the stage.
 - `policy` says of each route who may use it and what it costs, by kinds of `work`. `guards`
   run when a route was matched, before its body is read: `auth` (roles, and those whom features know

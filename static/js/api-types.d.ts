@@ -401,7 +401,7 @@ export interface ResultEntry {
   run: RunOutcome | null;
 }
 /**
- * How an answer compares with all seeds; null where that does not apply.
+ * Score of an answer against all seeds; null where that does not apply.
  */
 export interface Score {
   /**

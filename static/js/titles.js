@@ -147,7 +147,7 @@ const VALUE_TITLES = {
  * Whether the values of a field tell by themselves what they are: "Greedy", but not "0.3".
  * @param {string} field
  */
-export const isNamedByValue = (field) => field in VALUE_TITLES;
+const isNamedByValue = (field) => field in VALUE_TITLES;
 
 /**
  * A value of a setting's field in words.
@@ -158,3 +158,13 @@ export function valueTitle(field, value) {
   if (value === null || value === undefined) return "–";
   return (VALUE_TITLES[field] ?? String)(value);
 }
+
+/**
+ * Values of fields: "Sarsa(λ), α 0.1"; without those that the settings do not have.
+ * @param {Record<string, any>} settings
+ * @param {string[]} fields
+ */
+export const fieldsInWords = (settings, fields) =>
+  fields.filter((field) => settings[field] !== null && settings[field] !== undefined)
+    .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, settings[field]))
+    .join(", ");

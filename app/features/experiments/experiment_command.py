@@ -8,7 +8,7 @@ from cyclopts import Parameter
 from app.cli.setting_options import reads, split
 from app.features.experiments.command_trials import run_experiment
 from app.features.experiments.trial_options import ExecutionOptions, TrialOptions
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import WORLDS
 from hexapods.experiments.config import ExperimentConfig, experiment_config
@@ -16,9 +16,12 @@ from hexapods.experiments.formatting import listed
 from hexapods.experiments.presets import PRESETS
 from hexapods.runs.config import TrainingConfig
 
-_NAMES = [name for name, preset in PRESETS.items() if preset.command == f"experiment {name}"]
-"""The presets that this command starts; others have a command of their own."""
 _SETTINGS = declared_fields(TrainingConfig)
+
+
+def _names() -> list[str]:
+    """Return the presets that this command starts; others have a command of their own."""
+    return [name for name, preset in PRESETS.items() if preset.command == f"experiment {name}"]
 
 
 @Parameter(name="*")
@@ -77,7 +80,10 @@ _TRIALS, _WORLDS, _EXECUTION = TrialOptions(), WorldOptions(), ExecutionOptions(
 
 
 def experiment(
-    experiment: Annotated[str, Parameter(name="EXPERIMENT", choices=_NAMES)],
+    experiment: Annotated[
+        str,
+        Parameter(name="EXPERIMENT", completer=lambda _: _names(), help=", ".join(_names())),
+    ],
     /,
     *,
     trials: TrialOptions = _TRIALS,
@@ -85,9 +91,6 @@ def experiment(
     execution: ExecutionOptions = _EXECUTION,
 ) -> int:
     """Repeat an experiment over many seeds, or go on with it from its results folder.
-
-    Args:
-        experiment: which
 
     Raises:
         HexapodError: if the options are not valid.
@@ -101,9 +104,12 @@ def config_of(experiment: str, trials: TrialOptions, worlds: WorldOptions) -> Ex
     Raises:
         HexapodError: if the options are not valid.
     """
+    names = _names()
+    if experiment not in names:
+        raise UnknownName("experiment", experiment, names)
     grid, special = trials.fields(), worlds.fields()
     for field, value in {**special, "agents": grid["agents"]}.items():
-        takers = [name for name in _NAMES if field in PRESETS[name].fields]
+        takers = [name for name in names if field in PRESETS[name].fields]
         if value is not None and experiment not in takers:
             option = ExperimentConfig.option_of(field)
             raise InvalidInput(f"{option} is for {listed(takers)}, not {experiment}")

@@ -49,7 +49,6 @@ def experiment_options(agents: Collection[str]) -> list[dict[str, Any]]:
         options.append(
             {
                 "name": name,
-                "title": preset.title,
                 "description": preset.description,
                 "fields": fields,
                 "grid": [field for field in (GRID[0], *settings, *GRID[1:]) if field in fields],
@@ -57,9 +56,7 @@ def experiment_options(agents: Collection[str]) -> list[dict[str, Any]]:
                 "simulator_defaults": simulator_defaults,
                 "agents": [a for a in agents if "agents" in fields and compares(preset, a)],
                 "about": preset.about or preset.description,
-                "references": list(preset.references),
                 "is_timed": preset.is_timed,
-                "is_published": preset.is_published,
                 **result_options(preset),
             }
         )

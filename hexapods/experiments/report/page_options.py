@@ -63,7 +63,10 @@ def page_options(summary: Mapping[str, Any]) -> dict[str, Any]:
 def result_options(preset: Preset) -> dict[str, Any]:
     """Return what the components need of an experiment to show its result."""
     return {
+        "title": preset.title,
         "measure": preset.measure,
+        "references": list(preset.references),
+        "is_published": preset.is_published,
         "takes_settings": preset.takes_settings,
         "earning_steps": preset.earning_steps,
         "paper_gaits": dict(GAITS) if preset.is_published else {},

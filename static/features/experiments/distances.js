@@ -22,13 +22,13 @@ const pairOf = (setting) => `${setting.gait} in ${placeOf(setting)}`;
  */
 export function placesOf(settings) {
   /** @type {Map<string, Place>} */
-  const found = new Map();
+  const places = new Map();
   for (const setting of settings) {
     const { observation, robot, divisions, grid_side_m, half_side_m } = setting;
     const key = placeOf(setting);
-    if (!found.has(key)) found.set(key, { key, observation, robot, divisions, grid_side_m, half_side_m });
+    if (!places.has(key)) places.set(key, { key, observation, robot, divisions, grid_side_m, half_side_m });
   }
-  return [...found.values()];
+  return [...places.values()];
 }
 
 /**
@@ -39,29 +39,25 @@ export function placesOf(settings) {
 export function gaitsOf(settings, place) {
   const here = settings.filter((setting) => placeOf(setting) === place);
   return [...new Set(here.map(({ gait }) => gait))].map((gait) => {
-    const own = here.filter((setting) => setting.gait === gait);
-    const references = own.filter(({ role }) => role === "reference");
+    const inGait = here.filter((setting) => setting.gait === gait);
+    const references = inGait.filter(({ role }) => role === "reference");
     return {
       gait,
-      learners: own.filter(({ role }) => role === "learner"),
-      references: Object.fromEntries(references.map((one) => [one.agent, one])),
+      learners: inGait.filter(({ role }) => role === "learner"),
+      references: Object.fromEntries(references.map((setting) => [setting.agent, setting])),
     };
   });
 }
 
 /**
- * A function from a setting to greedy's total distance for the same gait in the same place [m].
+ * A function from a setting to greedy for the same gait in the same place; null before it has walked.
  * @param {Setting[]} settings
- * @returns {(setting: Setting) => number | null}
+ * @returns {(setting: Setting) => Setting | null}
  */
-export function greedyTotals(settings) {
-  /** @type {Map<string, number>} */
-  const found = new Map();
-  for (const setting of settings) {
-    const isGreedy = setting.role === "reference" && setting.agent === "greedy";
-    if (isGreedy && setting.total) found.set(pairOf(setting), setting.total.mean_m);
-  }
-  return (setting) => found.get(pairOf(setting)) ?? null;
+export function greedyIn(settings) {
+  const references = settings.filter(({ role, agent, total }) => role === "reference" && agent === "greedy" && total);
+  const byPlace = new Map(references.map((setting) => [pairOf(setting), setting]));
+  return (setting) => byPlace.get(pairOf(setting)) ?? null;
 }
 
 // ---- units: metres, half grid sides, or shares of greedy's distance
@@ -78,8 +74,8 @@ export const unit = signal("m");
  */
 export function factorOf({ half_side_m, greedy_m }) {
   if (unit.value === "m") return 1;
-  const one = unit.value === "h" ? half_side_m : greedy_m;
-  return one ? 1 / one : null;
+  const length = unit.value === "h" ? half_side_m : greedy_m;
+  return length ? 1 / length : null;
 }
 
 /**
@@ -130,18 +126,9 @@ export function distanceAxis(charts) {
   const values = charts.flatMap(({ lines, marks }) => [
     ...lines.flatMap(({ ys, low = [], high = [], seeds = [] }) => [...ys, ...low, ...high, ...seeds.flat()]),
     ...marks.map(({ y }) => y),
-  ]).filter((one) => typeof one === "number");
+  ]).filter((value) => typeof value === "number");
   return {
-    min: -largest(values.map((one) => -one), 0), max: HEADROOM * largest(values, MIN_TOP),
+    min: -largest(values.map((value) => -value), 0), max: HEADROOM * largest(values, MIN_TOP),
     unit: UNIT_NAMES[unit.value], text: shown,
   };
 }
-
-/**
- * The lines of references as marks. A single one is captioned; of several a key stands over the charts.
- * @param {{ name: string, kind: string, value: number }[]} levels
- * @returns {Mark[]}
- */
-export const asMarks = (levels) => levels.map(({ name, kind, value }) => ({
-  name, kind, y: value, ink: "--ink", text: levels.length > 1 ? "" : name.toLowerCase(),
-}));

@@ -4,14 +4,6 @@ import { signal } from "@preact/signals";
 /** Whether the page is being printed. */
 export const isPrinting = signal(false);
 
-/**
- * The entries to draw: the chosen one; on paper all.
- * @template Entry
- * @param {Entry[]} entries
- * @param {Entry} chosen
- */
-export const drawn = (entries, chosen) => (isPrinting.value ? entries : [chosen]);
-
 export function followPrinting() {
   addEventListener("beforeprint", () => {
     isPrinting.value = true;

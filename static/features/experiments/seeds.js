@@ -6,7 +6,7 @@ import { isLasting } from "../../js/api.js";
 import { changeIfStillHere } from "../../js/page-state.js";
 import { isActive } from "../../js/selectors.js";
 import { connection, requestRuns, runs } from "../../js/store.js";
-import { fieldTitle, isNamedByValue, messageOf, valueTitle, variedFields } from "../../js/titles.js";
+import { fieldsInWords, messageOf, variedFields } from "../../js/titles.js";
 import { getTrials, startTrial } from "./api.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -48,9 +48,9 @@ const PAUSE_MS = 10_000;
  */
 export function followTrials(experiment) {
   let [isBusy, isResting, isOver] = [false, false, false];
-  /** Experiment and progress of which the trials are known. */
-  let lastSeen = "";
-  /** The experiment of which the runs are known; events tell of later ones. */
+  /** Experiment and progress whose trials were loaded. */
+  let loaded = "";
+  /** The experiment whose runs were loaded; events tell of later ones. */
   let listed = "";
 
   const wanted = computed(() => {
@@ -61,18 +61,18 @@ export function followTrials(experiment) {
   const load = async () => {
     const now = wanted.peek();
     const [id, progress] = now.split(" ");
-    const isUrgent = progress === "ended" || !lastSeen.startsWith(`${id} `);
-    if (!now || now === lastSeen || isBusy || isOver || (isResting && !isUrgent)) return;
+    const isUrgent = progress === "ended" || !loaded.startsWith(`${id} `);
+    if (!now || now === loaded || isBusy || isOver || (isResting && !isUrgent)) return;
     isBusy = true;
     try {
       const answer = await getTrials(id);
       newest.value = { id, trials: bySetting(answer.trials) };
       if (listed !== id) await requestEveryRun(`of experiment ${id}`);
-      [lastSeen, listed] = [now, id];
+      [loaded, listed] = [now, id];
       failure.value = null;
     } catch (error) {
       failure.value = { id, error: /** @type {RequestError} */ (error) };
-      lastSeen = isLasting(failure.value.error) ? now : `${id} `;
+      loaded = isLasting(failure.value.error) ? now : `${id} `;
     }
     [isBusy, isResting] = [false, true];
     clearTimeout(timer);
@@ -89,7 +89,7 @@ export function followTrials(experiment) {
   const stops = [
     effect(() => {
       // The snapshot after a reconnection has the newest runs only.
-      if (connection.value !== "live") [lastSeen, listed] = ["", ""];
+      if (connection.value !== "live") [loaded, listed] = ["", ""];
     }),
     effect(() => {
       if (wanted.value) load();
@@ -117,27 +117,27 @@ async function requestEveryRun(search) {
 /** @type {(trials: Trial[]) => Map<string, Trial[]>} */
 function bySetting(trials) {
   /** @type {Map<string, Trial[]>} */
-  const grouped = new Map();
+  const trialsOf = new Map();
   for (const trial of trials) {
     const setting = trial.key.slice(0, trial.key.lastIndexOf("#"));
-    const ofSetting = grouped.get(setting);
-    if (ofSetting) ofSetting.push(trial);
-    else grouped.set(setting, [trial]);
+    const list = trialsOf.get(setting) ?? [];
+    list.push(trial);
+    trialsOf.set(setting, list);
   }
-  return grouped;
+  return trialsOf;
 }
 
 // ---- what is shown of them
 
 /**
  * Settings of which a single run repeats a trial (of a practice in blocks none does), with the model of a search.
- * @param {Summary} known
+ * @param {Summary} summary
  * @returns {Setting[]}
  */
 export function repeatable({ settings, worlds = [] }) {
   const models = new Map(worlds.map(({ key, plans_with }) => [key, plans_with]));
   return settings.filter(({ blocks, n }) => blocks <= 1 && n > 0)
-    .map((setting) => ({ ...setting, plans_with: models.get(setting.key) ?? null }));
+    .map((one) => ({ ...one, plans_with: models.get(one.key) ?? null }));
 }
 
 /** Fields in which settings may differ, in the order in which a name tells them. */
@@ -151,13 +151,7 @@ const NAMED_FIELDS = ["plans_with", "gait", "observation", "robot", "world"];
  */
 export function namesOf(settings, parameters) {
   const varied = variedFields(settings, [...NAMED_FIELDS, ...parameters]);
-  const wordsOf = (/** @type {Setting} */ setting) => varied.filter((field) => setting[field] !== null).map((field) => {
-    const value = valueTitle(field, setting[field]);
-    return isNamedByValue(field) ? value : `${fieldTitle(field)} ${value}`;
-  });
-  const nameOf = (/** @type {any} */ setting) =>
-    [valueTitle("agent", setting.agent), ...wordsOf(setting)].join(", ");
-  return new Map(settings.map((setting) => [setting.key, nameOf(setting)]));
+  return new Map(settings.map((setting) => [setting.key, fieldsInWords(setting, ["agent", ...varied])]));
 }
 
 /** Note of the server on a run that it made of a trial. */

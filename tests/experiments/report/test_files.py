@@ -171,7 +171,7 @@ def test_the_best_known_distance_has_its_definition(
 
 def test_the_table_has_the_papers_values_in_three_units(shown: Page, tmp_path: Path) -> None:
     opened(shown, tmp_path, small(robots=ROBOTS)[0])
-    table = shown.locator(".table-one")
+    table = shown.get_by_role("table", name="Distance at time-out and total distance")
     for column in ("Q-learning, 500 steps", "Q-learning, 1000 steps", "Greedy", "Two-step"):
         assert table.get_by_role("columnheader", name=column, exact=True).count() == 1
     assert "paper 0.25 m" in table.inner_text().replace("\xa0", " ")
@@ -180,7 +180,7 @@ def test_the_table_has_the_papers_values_in_three_units(shown: Page, tmp_path: P
         table.get_by_role("rowheader", name="Left-right, opposite (LeftRight-Origin)").count() == 1
     )
     assert "†" in table.inner_text()
-    total = table.locator("tbody tr").nth(1).locator("td.reference").first
+    total = table.get_by_role("row", name="Total").locator("[data-label=Greedy]")
     for unit, value in (("metres", "0.50"), ("half grid sides", "25.0"), ("relative", "100")):
         shown.get_by_role("button", name=unit).click()
         assert total.inner_text().startswith(value)

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  bare, factorOf, gaitsOf, greedyTotals, inUnit, placesOf, shown, unit,
+  bare, factorOf, gaitsOf, greedyIn, inUnit, placesOf, shown, unit,
 } from "../../../static/features/experiments/distances.js";
 import {
   agentSettings, chooseExperiment, chosenExperiment, enter, mistakes, openExperimentForm, requestBody, setField,
@@ -299,7 +299,7 @@ test("settings are grouped by place, and greedy is the reference of the same gai
   const [wave, tripod] = gaitsOf(all, stiff.key);
   assert.deepEqual([wave.gait, wave.learners.length, wave.references.greedy], ["wave", 1, greedy]);
   assert.deepEqual(tripod.references, {});
-  assert.deepEqual(all.map(greedyTotals(all)), [0.5, 0.5, null, null]);
+  assert.deepEqual(all.map(greedyIn(all)), [greedy, greedy, null, null]);
 });
 
 test("an experiment is described by its seeds, places and simulator", () => {

@@ -3,25 +3,13 @@
 import { count, duration, whole } from "../../../js/format.js";
 import { simulatorTitle } from "../../../js/titles.js";
 import { html } from "../../../js/components/elements.js";
-import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
-import { SweepTable } from "./sweep-table.js";
-import { TableOne } from "./table-one.js";
-import { Worlds } from "./worlds.js";
-import { experimentKind } from "../kinds.js";
+import { ResultPanels } from "./result.js";
 
 /** @import { Setting, Summary } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
 
 /** What happens at a click on the dot of a seed. @typedef {(setting: Setting, distance_m: number) => unknown} OnSeed */
-
-/** The table or chart of an experiment, by what it measures. @param {Summary} summary */
-function figureOf({ experiment }) {
-  const kind = experimentKind(experiment);
-  if (!kind) return null;
-  if (kind.measure === "distance") return kind.takes_settings ? SweepTable : TableOne;
-  return kind.measure === "blocks" ? FigureFour : Worlds;
-}
 
 /**
  * `children` follow the figure; `more` are further rows of the method.
@@ -30,16 +18,15 @@ function figureOf({ experiment }) {
  * }} props
  */
 export function Findings({ summary, onSeed = null, more = [], children }) {
-  const Figure = figureOf(summary);
   return html`
     <${LeftOut} trials=${summary.trials} />
-    ${Figure && html`<${Figure} summary=${summary} onSeed=${onSeed} />`}
+    <${ResultPanels} summary=${summary} onSeed=${onSeed} />
     ${children}
     ${!summary.worlds?.length && html`<${AtAGlance} summary=${summary} />`}
     <${Versus} summary=${summary} />
     <${Claims} claims=${summary.claims ?? []} isComplete=${summary.trials.done >= summary.trials.total} />
     <${Narrative} parts=${summary.story ?? []} />
-    <${FairClocks} timed=${summary.timed ?? []} />
+    <${FairClocks} summary=${summary} />
     <${Method} summary=${summary} more=${more} />
   `;
 }

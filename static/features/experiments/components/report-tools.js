@@ -1,13 +1,10 @@
 // Tools over a report's figures: the choice of place and unit, and the legend of dot strips.
-import { useRef } from "preact/hooks";
 import { unit, UNITS } from "../distances.js";
 import { sentence } from "../../../js/format.js";
 import { agentOf } from "../../../js/settings.js";
-import { options, served } from "../../../js/options.js";
+import { options } from "../../../js/options.js";
 import { observationTitle, robotTitle } from "../../../js/titles.js";
 import { html, Segments } from "../../../js/components/elements.js";
-import { FileMenu } from "../../../js/components/file-menu.js";
-import { isPrinting } from "../printing.js";
 
 /** @import { Described, Place } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
@@ -37,37 +34,6 @@ export function PlaceWords({ place: { observation, robot } }) {
   return html`<p class="dim">${words.filter(Boolean).join(" ")}</p>`;
 }
 
-/** @param {{ places: Place[], value: number, onValue: (value: string) => unknown }} props */
-export function PlaceSwitch({ places, value, onValue }) {
-  if (places.length < 2) return null;
-  const choices = places.map((place) => [place.key, placeTitle(place, places)]);
-  return html`<${Segments} label="Place" choices=${choices} value=${value} onValue=${onValue} />`;
-}
-
-/** The title of a place on paper, which has no switch. @param {{ place: Place, places: Place[] }} props */
-export const PlaceTitle = ({ place, places }) =>
-  isPrinting.value && places.length > 1 && html`<h3 class="place-title">${placeTitle(place, places)}</h3>`;
-
-/**
- * The menu of a table that has strips, which downloads it as a picture with the legend of its panel.
- * @param {{ title: string }} props
- */
-export function TableMenu({ title }) {
-  const menu = useRef(/** @type {HTMLElement | null} */ (null));
-  /** @param {import("../../../js/components/file-menu.js").FileKind} kind */
-  const save = async (kind) => {
-    const { saveTable } = await import("../../../js/components/table-files.js");
-    const panel = /** @type {HTMLElement} */ (menu.current?.closest(".panel"));
-    const table = /** @type {HTMLTableElement} */ (panel.querySelector("table"));
-    await saveTable(/** @type {"png" | "svg"} */ (kind), { table, legend: panel.querySelector(".strip-key"), title });
-  };
-  return html`
-    <div class="table-menu" ref=${menu}>
-      <${FileMenu} label=${`Download ${title}`} kinds=${["png", "svg"]} save=${save} />
-    </div>
-  `;
-}
-
 export const UnitSwitch = () => html`
   <${Segments} label="Unit of distances" choices=${UNITS} value=${unit.value}
     onValue=${(/** @type {string} */ name) => (unit.value = name)} />
@@ -76,13 +42,14 @@ export const UnitSwitch = () => html`
 const TYPICAL = html`
   <line class="interval" x1="2" x2="18" y1="8" y2="8" /><line class="typical" x1="10" x2="10" y1="3" y2="13" />
 `;
-/** @typedef {"seed" | "typical" | "greedy" | "best-known" | "published"} SignName */
+/** @typedef {"seed" | "typical" | "greedy" | "half" | "best-known" | "published"} SignName */
 
 /** @type {Record<SignName, [string, ComponentChildren]>} */
 const SIGNS = {
   seed: ["one seed", html`<circle class="dot-of-seed" cx="10" cy="8" r="3.5" />`],
   typical: ["interquartile mean, 95 % interval", TYPICAL],
   greedy: ["greedy", html`<line class="mark greedy" x1="10" x2="10" y1="0" y2="16" />`],
+  half: ["half of greedy’s", html`<line class="mark half" x1="10" x2="10" y1="0" y2="16" />`],
   "best-known": ["best known", html`<line class="mark best-known" x1="10" x2="10" y1="0" y2="16" />`],
   published: ["the paper", html`<path class="mark published" d="M10 2 16 8 10 14 4 8z" />`],
 };
@@ -92,20 +59,10 @@ const Sign = ({ name }) => html`
   <span><svg class="dots" width="20" height="16" aria-hidden="true">${SIGNS[name][1]}</svg>${SIGNS[name][0]}</span>
 `;
 
-/** The legend of a dot strip. @param {{ signs?: SignName[], color: string | undefined }} props */
-export const StripKey = ({ signs = /** @type {SignName[]} */ (Object.keys(SIGNS)), color }) => html`
+/** The legend of a dot strip. @param {{ signs: SignName[], color: string | undefined }} props */
+export const StripKey = ({ signs, color }) => html`
   <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
 `;
-
-/**
- * Definition of the best known distance, and the cases that have one if some lack it.
- * @param {{ distances: (number | null | undefined)[] }} props
- */
-export function BestKnownWords({ distances }) {
-  const { best_known, best_known_where } = served().help;
-  const isEverywhere = distances.every((distance) => typeof distance === "number");
-  return html`<p class="dim table-note">${best_known} ${isEverywhere ? "" : best_known_where}</p>`;
-}
 
 /**
  * The lines of references, after the colours of agents.
