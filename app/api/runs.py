@@ -129,15 +129,15 @@ def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[Delet
 
 def delete_each(services: Services, ids: Iterable[str]) -> DeletedView:
     """Delete each run that can be deleted, in this order; return what was deleted and kept."""
-    deleted, kept = [], []
+    deleted, kept_runs = [], []
     for run_id in dict.fromkeys(ids):
         try:
             services.jobs.delete(run_id)
         except (NotFound, Conflict) as error:
-            kept.append(KeptRun(id=run_id, reason=str(error)))
+            kept_runs.append(KeptRun(id=run_id, reason=str(error)))
         else:
             deleted.append(run_id)
-    return DeletedView(deleted=deleted, kept=kept)
+    return DeletedView(deleted=deleted, kept=kept_runs)
 
 
 @router.get(

@@ -113,8 +113,10 @@ def benchmark(
                 may_continue=lambda: not interrupted.is_set(),
             )
     except KeyboardInterrupt:
-        kept = "nothing is kept without --out" if out is None else "the same command goes on"
-        print_line(f"\nInterrupted; {kept}.")
+        continuation = (
+            "nothing is kept without --out" if out is None else "the same command goes on"
+        )
+        print_line(f"\nInterrupted; {continuation}.")
         return INTERRUPTED
     if as_json:
         print(encode(done.content).decode(), end="")

@@ -65,11 +65,11 @@ def training() -> dict[str, float]:
 
 def look_ahead() -> dict[str, float]:
     """Measure two-step decisions on one and on all threads, and their overhead over physics."""
-    one, parallel, replay = _two_step(threads=1), _two_step(threads=0), _Replay(threads=0)
+    one_thread, parallel, replay = _two_step(threads=1), _two_step(threads=0), _Replay(threads=0)
     _add_layers(replay)
     single_s, parallel_s, physics_s = [], [], []
     for _ in range(ROUNDS):
-        single_s.append(_seconds(one.decide))
+        single_s.append(_seconds(one_thread.decide))
         parallel_s.append(_seconds(parallel.decide))
         physics_s.append(_seconds(replay.run))
     return {

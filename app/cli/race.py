@@ -92,9 +92,9 @@ def race(
 
 def _lane(text: str, observation: Any) -> races.Lane:
     """Parse `AGENT[=Q.NPZ][,NAME=VALUE]…`; any other comma belongs to the path."""
-    head, *given = _SETTING.split(text)
+    head, *setting_texts = _SETTING.split(text)
     agent, _, path = head.partition("=")
-    values = dict(zip(given[::2], given[1::2], strict=True))
+    values = dict(zip(setting_texts[::2], setting_texts[1::2], strict=True))
     declared = {**declared_fields(LaneConfig), **agent_settings(agent)}
     for name in values:
         if name not in declared:
@@ -116,6 +116,8 @@ def _lane(text: str, observation: Any) -> races.Lane:
 
 def _gaits(done: races.Race) -> list[dict[str, Any] | None]:
     """Return the gait of each lane in single numbers; see `hexapods.runs.gait_analysis`."""
-    walks = [walk_of_lane(one, done.config, done.config.world) for one in done.recording]
+    walks = [
+        walk_of_lane(recording, done.config, done.config.world) for recording in done.recording
+    ]
     window = window_of(walks, None, None)
     return [gait_summary(gait_figures(walk, *window)) for walk in walks]

@@ -43,12 +43,12 @@ def stored_robot(text: str) -> Robot:
     """
     try:
         with open_for_reading(read_settings(data=_data.get())) as store:
-            found = store.robots.find(text)
-            names = [one.name for one in store.robots.stored()]
+            stored = store.robots.find(text)
+            names = [robot.name for robot in store.robots.stored()]
     except HexapodError as error:
         unknown = UnknownName("robot", text, PRESETS)
         raise InvalidInput(f"{unknown}. Stored robots cannot be read: {error}") from error
-    if found is None:
+    if stored is None:
         raise UnknownName("robot", text, [*PRESETS, *names])
-    LIBRARY.describe(found.id, found.about)
-    return found.robot
+    LIBRARY.describe(stored.id, stored.about)
+    return stored.robot

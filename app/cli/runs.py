@@ -119,7 +119,11 @@ def _outcome(run: Run) -> str:
     if isinstance(result, TrainingResult):
         return "" if result.distance_m is None else f"{result.distance_m:.2f} m"
     if isinstance(result, RaceResult):
-        return ", ".join(title_of(one.agent) for one in result.lanes if one.clocks.paper.rank == 1)
+        return ", ".join(
+            title_of(lane_result.agent)
+            for lane_result in result.lanes
+            if lane_result.clocks.paper.rank == 1
+        )
     kind = added_kind(run.kind)
     return "" if kind is None or result is None else kind.outcome(result)
 

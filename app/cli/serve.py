@@ -68,23 +68,23 @@ def serve(
     Raises:
         InvalidInput: if the server cannot start with these options.
     """
-    given: dict[str, Any] = {"host": host, "port": port, "data": data}
+    options: dict[str, Any] = {"host": host, "port": port, "data": data}
     if share:
-        given["host"] = host or "0.0.0.0"  # noqa: S104 - that is what --share is for
-        given["token"] = read_token() or secrets.token_urlsafe(24)
-    given |= switches
-    of_features = read_feature_settings(**given)
+        options["host"] = host or "0.0.0.0"  # noqa: S104 - that is what --share is for
+        options["token"] = read_token() or secrets.token_urlsafe(24)
+    options |= switches
+    of_features = read_feature_settings(**options)
     # Of a token of the environment no link is printed unless it is asked for: it would be in a log.
     shows_links = share or any(
         settings.audience and any(switches.get(declared.name) for declared in fields(settings))
         for settings in of_features
     )
     needs_token = any(settings.needs_token for settings in of_features)
-    if needs_token and "token" not in given and read_token() is None:
+    if needs_token and "token" not in options and read_token() is None:
         bound = host or os.environ.get("HEXAPODS_HOST") or Settings.host
         if is_loopback(bound):
-            given["token"], shows_links = secrets.token_urlsafe(24), True
-    settings = read_settings(**given)
+            options["token"], shows_links = secrets.token_urlsafe(24), True
+    settings = read_settings(**options)
     remove_secrets()  # no process that is started from here on needs them
     with without_garbage_collection():
         from app import server  # noqa: PLC0415 - its imports take most of a second

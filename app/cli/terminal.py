@@ -126,7 +126,7 @@ def _wrapped(cell: str, width: int) -> str:
 def _longest(cells: Iterable[str], *separators: str) -> int:
     """Return the width of the widest part of some cells, in columns of the terminal."""
     parts = re.compile("|".join(separators))
-    return max(cell_len(part) for cell in cells for part in parts.split(cell))
+    return max(cell_len(word) for cell in cells for word in parts.split(cell))
 
 
 def _narrowed(widths: Sequence[int], least: Sequence[int], room: int) -> list[int]:
@@ -150,27 +150,27 @@ def show_lanes(race: Race, clock: Clock) -> None:
     where a narrow terminal does not break it apart.
     """
     rows, failures = [], []
-    for one in race.standings_under(clock):
-        own, lane = race.config.lanes[one.lane], race.result.lanes[one.lane]
-        name = name_of(own.agent, own.settings, own.keep_learning)
-        known = plans_with(own, race.config)
-        name += f"\n   plans with the {PLANNING_MODEL_TITLES[known]}" if known else ""
-        finished_m, total_m = one.finished_distance_m, one.total_distance_m
+    for standing in race.standings_under(clock):
+        lane_config, lane = race.config.lanes[standing.lane], race.result.lanes[standing.lane]
+        name = name_of(lane_config.agent, lane_config.settings, lane_config.keep_learning)
+        model = plans_with(lane_config, race.config)
+        name += f"\n   plans with the {PLANNING_MODEL_TITLES[model]}" if model else ""
+        finished_m, total_m = standing.finished_distance_m, standing.total_distance_m
         if lane.failure is not None:
-            failures.append(f"{title_of(own.agent)} failed: {lane.failure}")
+            failures.append(f"{title_of(lane_config.agent)} failed: {lane.failure}")
         rows.append(
             (
-                name if one.rank is None else f"{one.rank}. {name}",
+                name if standing.rank is None else f"{standing.rank}. {name}",
                 "–" if finished_m is None else f"{finished_m:.2f} m",
                 ("–" if lane.failure is None else "failed")
                 if total_m is None
                 else f"{total_m:.2f} m",
-                f"{one.elapsed_s:.1f} s",
+                f"{standing.elapsed_s:.1f} s",
                 f"{1000 * lane.decision_s / max(1, lane.steps):.1f} ms",
                 f"{lane.simulated_transitions:,}",
             )
         )
-    is_ranked = any(one.rank is not None for one in race.standings_under(clock))
+    is_ranked = any(standing.rank is not None for standing in race.standings_under(clock))
     title = "Ranked at time-out" if is_ranked else "No ranking: no lane used all its steps"
     head = ("lane", "at time-out", "total", "time", "a decision", "simulated transitions")
     show_table(f"{title}, {CLOCK_TITLES[clock]}", head, rows)

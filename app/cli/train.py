@@ -88,8 +88,8 @@ def train(
         if checkpoint:
             training = _resume(checkpoint)
         else:
-            given = {"gait": read_gait(gait or ""), **walk.fields(), "observation": observation}
-            training = _train(agent, {**given, **settings}, table, out)
+            problem = {"gait": read_gait(gait or ""), **walk.fields(), "observation": observation}
+            training = _train(agent, {**problem, **settings}, table, out)
     except Interrupted as interrupted:
         _say_how_to_go_on(interrupted, out, as_json)
         return INTERRUPTED
@@ -106,17 +106,17 @@ def train(
     return FAILED if training.result is None else 0
 
 
-def _train(agent: str, given: Mapping[str, Any], table: str | None, out: str | None) -> Training:
+def _train(agent: str, options: Mapping[str, Any], table: str | None, out: str | None) -> Training:
     """Train an agent, from a table if there is one, with a progress bar."""
-    if table and "seed" in given:
+    if table and "seed" in options:
         raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
-    with _progress(given.get("steps", TrainingConfig.steps)) as show:
+    with _progress(options.get("steps", TrainingConfig.steps)) as show:
         return practice.train(
             agent,
             on_record=show,
             table=read_table(table) if table else None,
             checkpoint=_checkpoint_of(out) if out else None,
-            **given,
+            **options,
         )
 
 

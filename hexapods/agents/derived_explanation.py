@@ -106,12 +106,12 @@ class OneStepExplainer(Generic[Learner]):
         finally:
             learner.table = table
         summary, direct = self.direct_update()
-        others = [update for update in self.updates if update is not direct]
+        further = [update for update in self.updates if update is not direct]
         beliefs = []
         if learner._is_average:
             name = "average reward of a step"
             beliefs.append(Belief(name, self._average_m, learner._average_m))
-        return UpdateExplanation(summary, direct, others, beliefs)
+        return UpdateExplanation(summary, direct, further, beliefs)
 
     def add_write(self, table: ValueTable, state: int, column: int, after: float) -> None:
         """Add the update of an entry, which is about to get the value `after`."""

@@ -116,8 +116,8 @@ def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
     with (folder / "errors.txt").open("w+") as errors:
         env = {"PATH": "/usr/bin:/bin", "HEXAPODS_DATA": str(folder / "data")}
         running = start_hexapods(command, env, errors, folder)
-        kept = folder / "i.json.runs"
-        while not (kept.exists() and len(kept.read_bytes().splitlines()) > 1):
+        runs_file = folder / "i.json.runs"
+        while not (runs_file.exists() and len(runs_file.read_bytes().splitlines()) > 1):
             time.sleep(0.05)
         running.send_signal(signal.SIGINT)
         assert running.stdout is not None
@@ -125,7 +125,7 @@ def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
             text = printed.read()
         assert running.wait() == 130
     assert "Interrupted; the same command goes on." in text
-    before = kept.read_bytes().splitlines()[1:]
+    before = runs_file.read_bytes().splitlines()[1:]
     done = output(*command, folder=folder)
     distances = {
         (entry["steps"], number): distance_m
@@ -135,11 +135,11 @@ def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
     for line in before:
         _, steps, number, distance_m, _ = json.loads(line)
         assert distances[steps, number] == distance_m
-    assert not kept.exists()
+    assert not runs_file.exists()
 
 
 @pytest.mark.parametrize(
-    ("given", "reason"),
+    ("arguments", "reason"),
     [
         (("nobody",), "unknown agent 'nobody'; choose one of: q-learning, "),
         (("no.module:Agent",), "cannot import no.module"),
@@ -159,8 +159,8 @@ def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
         (("q-learning", "--out", "none/s.json"), "cannot write none/s.json"),
     ],
 )
-def test_bad_input_is_refused(given: tuple[str, ...], reason: str, tmp_path: Path) -> None:
-    assert reason in refusal("benchmark", *given, folder=tmp_path, run=in_process)
+def test_bad_input_is_refused(arguments: tuple[str, ...], reason: str, tmp_path: Path) -> None:
+    assert reason in refusal("benchmark", *arguments, folder=tmp_path, run=in_process)
 
 
 def test_verify_refuses_other_files_and_protocols(folder: Path) -> None:

@@ -81,12 +81,12 @@ def test_quota_and_database_are_checked(tmp_path: Path) -> None:
 def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
     (tmp_path / "rex.json").write_bytes(document_of(robot({"preset": "dog", "femur_m": 0.096})))
     where = ("--name", "Rex", "--data", str(tmp_path / "data"))
-    made = output("robots", "import", "rex.json", *where, folder=tmp_path, run=in_process)
+    imported = output("robots", "import", "rex.json", *where, folder=tmp_path, run=in_process)
     assert failures(examined(tmp_path)) == {}
-    (document,) = (tmp_path / "data" / "robots").rglob(f"{made['id']}*")
+    (document,) = (tmp_path / "data" / "robots").rglob(f"{imported['id']}*")
     document.write_bytes(document.read_bytes()[:-9])
     said = failures(examined(tmp_path))["data"]
-    assert f"Rex ({made['id']})" in said
+    assert f"Rex ({imported['id']})" in said
     assert "put a backup" in said
 
 

@@ -34,9 +34,9 @@ def test_help_shows_the_settings_of_the_agents_that_are_named(tmp_path: Path) ->
     two = shown("sweep", "--agent=sarsa-lambda,linear-model", folder=tmp_path)
     assert two.index("Settings of sarsa-lambda") < two.index("Settings of linear-model")
 
-    own = shown("benchmark", "tests.own_agents:Moody", folder=tmp_path)
-    assert "Settings of tests.own_agents:Moody" in own
-    assert "--mood" in own
+    class_help = shown("benchmark", "tests.own_agents:Moody", folder=tmp_path)
+    assert "Settings of tests.own_agents:Moody" in class_help
+    assert "--mood" in class_help
 
 
 def test_a_setting_of_another_agent_is_refused_with_those_of_this_one(tmp_path: Path) -> None:

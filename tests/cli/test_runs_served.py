@@ -43,10 +43,12 @@ def unchanged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served
 
 
 def test_changes_are_made_by_the_running_server(server: Served, data: Path, tmp_path: Path) -> None:
-    here = ("--data", str(data))
+    data_option = ("--data", str(data))
     with server.client.stream("GET", "/api/v1/events") as events:
         lines = events.iter_lines()
-        done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
+        done = hexapods(
+            "runs", "delete", RACED, *data_option, folder=tmp_path, HEXAPODS_TOKEN=TOKEN
+        )
         assert done.stdout == f"Deleted race {RACED}.\n", done.stderr
         assert any(line == "event: run-deleted" for line in lines), "the page was told"
     assert server.client.get(f"/api/v1/races/{RACED}").status_code == 404
@@ -56,13 +58,13 @@ def test_refusals_of_the_server_are_reported(
     unchanged: tuple[Served, Path], tmp_path: Path
 ) -> None:
     server, data = unchanged
-    here = ("--data", str(data))
+    data_option = ("--data", str(data))
     for token in ("", "another-token-for-tests"):
-        delete = ("runs", "delete", RACED, *here)
+        delete = ("runs", "delete", RACED, *data_option)
         said = refusal(*delete, folder=tmp_path, run=in_process, HEXAPODS_TOKEN=token)
         assert "needs its token: set HEXAPODS_TOKEN" in said
         assert server.address in said
-    listed = output("runs", "list", *here, folder=tmp_path, run=in_process)
+    listed = output("runs", "list", *data_option, folder=tmp_path, run=in_process)
     assert [run["id"] for run in listed["items"]] == [TRAINING, RACED]
 
 
@@ -88,13 +90,13 @@ def test_full_quota_refuses_starts(data: Path) -> None:
 def test_runs_can_be_deleted_after_a_crash_of_the_server(data: Path, tmp_path: Path) -> None:
     server = Served(data)
     server.end(by=9)
-    here = ("--data", str(data))
-    assert len(output("runs", "list", *here, folder=tmp_path)["items"]) == 2
-    assert output("runs", "delete", RACED, *here, folder=tmp_path) == {"deleted": RACED}
+    data_option = ("--data", str(data))
+    assert len(output("runs", "list", *data_option, folder=tmp_path)["items"]) == 2
+    assert output("runs", "delete", RACED, *data_option, folder=tmp_path) == {"deleted": RACED}
     with opened(data, None) as store:
         store.create(training("zz", state="running"))
     # No server holds the lock, so the run is interrupted and can be deleted.
-    done = hexapods("runs", "delete", "zz", *here, folder=tmp_path)
+    done = hexapods("runs", "delete", "zz", *data_option, folder=tmp_path)
     assert (done.returncode, done.stdout) == (0, "Deleted training zz.\n")
     assert "The last server died: 1 runs are interrupted" in done.stderr
-    assert "no run 'zz'" in refusal("runs", "show", "zz", *here, folder=tmp_path)
+    assert "no run 'zz'" in refusal("runs", "show", "zz", *data_option, folder=tmp_path)

@@ -35,9 +35,9 @@ def serving(folder: Path, *options: str, **variables: str) -> Iterator[IO[str]]:
 def test_shared_links_are_printed_when_the_server_answers(tmp_path: Path) -> None:
     with serving(tmp_path, "--share", "--host", "127.0.0.1") as printed:
         line = next(line for line in printed if line.startswith("Operator"))
-        found = re.search(r"http://[^:/]+:(\d+)(/\?token=\S+)", line)
-        assert found is not None, line
-        port, link = found.groups()
+        match = re.search(r"http://[^:/]+:(\d+)(/\?token=\S+)", line)
+        assert match is not None, line
+        port, link = match.groups()
         opened = httpx2.get(f"http://127.0.0.1:{port}{link}", timeout=LONG_S)
         assert opened.status_code == 303
         assert "hexapods" in opened.headers["set-cookie"]
@@ -55,13 +55,13 @@ def test_a_demo_on_loopback_makes_a_token_and_prints_the_links(
     variables = {} if is_option else {"HEXAPODS_DEMO": "1"}
     with serving(tmp_path, *options, **variables) as printed:
         line = next(line for line in printed if line.startswith("Operator"))
-        found = re.search(r"http://127.0.0.1:(\d+)/\?token=(\S+)", line)
-        assert found is not None, line
-        address = f"http://127.0.0.1:{found[1]}"
+        match = re.search(r"http://127.0.0.1:(\d+)/\?token=(\S+)", line)
+        assert match is not None, line
+        address = f"http://127.0.0.1:{match[1]}"
         assert next(printed).startswith("Visitors (may train")
         allowance = httpx2.get(f"{address}/api/v1/allowance", timeout=LONG_S).json()
         assert allowance["hours"] == 24
-        bearer = {"Authorization": f"Bearer {found[2]}"}
+        bearer = {"Authorization": f"Bearer {match[2]}"}
         visitors = f"{address}/api/v1/visitors"
         assert httpx2.get(visitors, headers=bearer, timeout=LONG_S).json() == {"items": []}
         assert httpx2.get(visitors, timeout=LONG_S).status_code == 403

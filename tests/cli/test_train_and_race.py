@@ -39,8 +39,8 @@ def test_train_prints_the_distance(folder: Path) -> None:
 def test_train_equals_a_direct_call(tmp_path: Path) -> None:
     lines = [f"{name} = {value}" for name, value in QUICK_STEPS.items()]
     (tmp_path / "quick.toml").write_text("\n".join(lines))
-    own = ("--robot", "quick.toml", "--steps", "60", "--seed", "7")
-    printed = output("train", *GAIT, *own, folder=tmp_path)
+    options = ("--robot", "quick.toml", "--steps", "60", "--seed", "7")
+    printed = output("train", *GAIT, *options, folder=tmp_path)
     config = training_config(gait="left-right-origin", robot=HASTY, steps=60, seed=7)
     learner = build_learner(config)
     for _ in train(learner, config):
@@ -53,8 +53,8 @@ def test_a_race_equals_a_direct_call(tmp_path: Path) -> None:
     lanes = ("--lane", "greedy", "--lane", "random-walk")
     printed = output("race", *QUICK, *lanes, "--seed", "3", folder=tmp_path, run=in_process)
     config = printed["config"]
-    given = {"gait": config["gait"], "simulator": config["simulator"], "steps": config["steps"]}
-    race = hx.race(["greedy", "random-walk"], seed=3, **given)
+    problem = {"gait": config["gait"], "simulator": config["simulator"], "steps": config["steps"]}
+    race = hx.race(["greedy", "random-walk"], seed=3, **problem)
     assert printed["recording_sha256"] == race.recording_sha256
 
 
@@ -104,10 +104,10 @@ def test_a_race_prints_the_gait_of_each_lane(tmp_path: Path) -> None:
 
     assert wave["cycle"]["steps"] == retrograde["cycle"]["steps"] == 3
     assert wandering["cycle"] is None
-    for one in (wave, retrograde):
-        assert one["speed_m_s"] > 0.02
-        assert one["cost_of_transport"] < 5
-        assert len(one["leg_duty_factors"]) == 6
+    for summary in (wave, retrograde):
+        assert summary["speed_m_s"] > 0.02
+        assert summary["cost_of_transport"] < 5
+        assert len(summary["leg_duty_factors"]) == 6
 
 
 def test_a_race_in_which_all_fail_has_no_ranking(tmp_path: Path) -> None:
@@ -125,14 +125,14 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
         "q-learning=q.npz,keep_learning=true",
         "q-learning,keep_learning=true,alpha=0.5,observation=planned",
     )
-    race = ("race", *QUICK, "--steps", "5", *(part for lane in lanes for part in ("--lane", lane)))
+    race = ("race", *QUICK, "--steps", "5", *(word for lane in lanes for word in ("--lane", lane)))
     printed = output(*race, folder=folder)
     settings = [
-        (one["settings"].get("depth"), one["keep_learning"], one["settings"].get("alpha"))
-        for one in printed["config"]["lanes"]
+        (lane["settings"].get("depth"), lane["keep_learning"], lane["settings"].get("alpha"))
+        for lane in printed["config"]["lanes"]
     ]
     assert settings == [(2, False, None), (None, True, None), (None, True, 0.5)]
-    seen = [one["observation"] for one in printed["config"]["lanes"]]
+    seen = [lane["observation"] for lane in printed["config"]["lanes"]]
     assert seen == ["measured", "measured", "planned"]
     assert printed["result"]["lanes"][0]["simulated_transitions"] == 5 * 156
     shown = hexapods(*race, folder=folder).stdout.replace("\u00a0", " ")
@@ -157,8 +157,8 @@ def test_the_example_agent_learns_and_races(tmp_path: Path) -> None:
 def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
     (tmp_path / "eight.toml").write_text('preset = "compliant"\nn_legs = 8\nhome_radius_m = 0.26\n')
     gait = json.dumps({"right_leg": 1, "left_leg": 2, "pairs": [[1, 2], [8, 3], [7, 4], [6, 5]]})
-    own = ("--gait", gait, "--robot", "eight.toml", "--steps", "20", "--evaluate-every", "0")
-    config = output("train", *own, folder=tmp_path)["config"]
+    options = ("--gait", gait, "--robot", "eight.toml", "--steps", "20", "--evaluate-every", "0")
+    config = output("train", *options, folder=tmp_path)["config"]
     assert config["robot"]["preset"] == "compliant"
     assert len(config["robot"]["legs"]) == 8
     assert config["gait"]["pairs"][1] == [8, 3]

@@ -121,8 +121,8 @@ def test_a_pickled_library_finds_the_same(tmp_path: Path) -> None:
 
 
 def _describe(pipe: Any) -> None:
-    found = [robot({"id": robot_id}) for robot_id in pipe.recv()]
-    pipe.send([(entry.name, entry.femur_m, own_gait(entry)) for entry in found])
+    robots = [robot({"id": robot_id}) for robot_id in pipe.recv()]
+    pipe.send([(entry.name, entry.femur_m, own_gait(entry)) for entry in robots])
 
 
 def test_another_process_finds_what_this_one_finds(tmp_path: Path) -> None:

@@ -33,17 +33,17 @@ def export_runs(
     check_writable(out)
     with open_for_reading(read_settings(data=data)) as store:
         exported = [store.get(find_run(store, run_id).id) for run_id in run_ids]
-        first, *others = exported
+        first, *further = exported
         ids = [run.id for run in exported]
-        archive = b"".join(export_many(store, ids) if others else export_chunks(store, first.id))
+        archive = b"".join(export_many(store, ids) if further else export_chunks(store, first.id))
     write_whole(out, archive)
     if as_json:
-        named = {"ids": ids} if others else {"id": first.id}
+        named = {"ids": ids} if further else {"id": first.id}
         print(json.dumps({**named, "file": out, "bytes": len(archive)}))
     else:
-        these = f"{len(exported)} runs are" if others else f"{first.kind} {first.id} is"
+        subject = f"{len(exported)} runs are" if further else f"{first.kind} {first.id} is"
         print(
-            f"{these.capitalize()} in {out} ({len(archive) / 1e6:.1f} MB); `hexapods import` "
-            f"takes {'them' if others else 'it'} in."
+            f"{subject.capitalize()} in {out} ({len(archive) / 1e6:.1f} MB); `hexapods import` "
+            f"takes {'them' if further else 'it'} in."
         )
     return 0

@@ -117,8 +117,8 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
 def print_failures(trials: Mapping[str, Any]) -> None:
     """Print the trials that failed, with their reasons; `trials` is that of a summary."""
     for name, reasons in (("Failed", trials["failures"]), ("Set aside", trials["set_aside"])):
-        for one in reasons:
-            print(f"{name}: {one['label']}: {one['reason']}")
+        for reason in reasons:
+            print(f"{name}: {reason['label']}: {reason['reason']}")
     if trials["failed"]:
         print(f"{failures_text(trials)}; what is said here is of the others.")
 
@@ -129,16 +129,19 @@ def _table(summary: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str,
     from hexapods.experiments.presets import preset_of  # noqa: PLC0415
 
     settings = summary["settings"]
-    known = {one["key"]: one for one in summary["worlds"]}
-    models = {key: one["plans_with"] for key, one in known.items()}
+    worlds = {entry["key"]: entry for entry in summary["worlds"]}
+    models = {key: entry["plans_with"] for key, entry in worlds.items()}
     names = setting_names(settings, summary["parameters"], models)
-    rows = [(names[one["key"]], *_distances(one)) for one in settings]
+    rows = [(names[setting["key"]], *_distances(setting)) for setting in settings]
     if not preset_of(summary["experiment"]).has_worlds:
         head = (*_HEAD, "at time-out m", "of greedy")
-        return head, [(*row, *_in_race(one)) for row, one in zip(rows, settings, strict=True)]
+        return head, [
+            (*row, *_in_race(setting)) for row, setting in zip(rows, settings, strict=True)
+        ]
     head = (*_HEAD, "of greedy", "of best known")
     return head, [
-        (*row, *_shares(known.get(one["key"]))) for row, one in zip(rows, settings, strict=True)
+        (*row, *_shares(worlds.get(setting["key"])))
+        for row, setting in zip(rows, settings, strict=True)
     ]
 
 
@@ -157,11 +160,11 @@ def _in_race(setting: Mapping[str, Any]) -> tuple[str, str]:
     return "" if finished is None else f"{finished['iqm_m']:.3f}", share_text(setting["relative"])
 
 
-def _shares(one: Mapping[str, Any] | None) -> tuple[str, str]:
+def _shares(entry: Mapping[str, Any] | None) -> tuple[str, str]:
     return (
         ("", "")
-        if one is None
-        else (share_text(one["of_greedy"]), share_text(one["of_best_known"]))
+        if entry is None
+        else (share_text(entry["of_greedy"]), share_text(entry["of_best_known"]))
     )
 
 

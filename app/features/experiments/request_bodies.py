@@ -77,15 +77,16 @@ class ExperimentBody(Body):
         Raises:
             InvalidInput: if the values are not valid together, or an agent is not registered.
         """
-        given: dict[str, Any] = {
-            one.name: getattr(self, one.name)
-            for one in fields(ExperimentConfig)
-            if one.name in type(self).model_fields and one.name not in ("experiment", "settings")
+        by_field: dict[str, Any] = {
+            field.name: getattr(self, field.name)
+            for field in fields(ExperimentConfig)
+            if field.name in type(self).model_fields
+            and field.name not in ("experiment", "settings")
         } | given_settings(self.settings)
-        for agent in given["agents"] or ():
+        for agent in by_field["agents"] or ():
             if agent not in self.registered:
                 raise UnknownName("agent", agent, self.registered)
-        values = {name: tuple(v) if isinstance(v, list) else v for name, v in given.items()}
+        values = {name: tuple(v) if isinstance(v, list) else v for name, v in by_field.items()}
         config = experiment_config(self.experiment, values)
         return ExperimentStart(config, self.name or None, self.workers)
 
@@ -104,12 +105,14 @@ def experiment_body(agents: tuple[str, ...]) -> type[ExperimentBody]:
         for name, declared in settings_by_name(agents).items()
     }
     doc, settings = ExperimentBody.__doc__, settings_body("SettingLists", lists)
-    own = record_fields(
+    own_fields = record_fields(
         ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance", "reward"}
     )
     preset_name: Any = Literal[tuple(PRESETS)]
-    own["experiment"] = (Annotated[preset_name, Field(description=VALID["experiment"])], ...)
+    own_fields["experiment"] = (Annotated[preset_name, Field(description=VALID["experiment"])], ...)
     name = "ExperimentBody"
-    model = create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
+    model = create_model(
+        name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own_fields
+    )
     model.registered = agents
     return model

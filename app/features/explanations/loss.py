@@ -72,7 +72,7 @@ class Tried(NamedTuple):
     moves_there: int
 
 
-class Standing(NamedTuple):
+class Deficit(NamedTuple):
     """A lane that is behind in a race; the members as of `LossView`."""
 
     run_id: str
@@ -91,7 +91,7 @@ class ValuedTable(Tabular, Valuing, Protocol):
 
 def standing_of(
     run: Run, lanes: Sequence[LaneRecording], lane: int, steps: int, clock: Clock
-) -> Standing:
+) -> Deficit:
     """Return by how much a lane is behind, and whom: at time-out, or before by its steps so far.
 
     Raises:
@@ -110,7 +110,7 @@ def standing_of(
             "what loses is asked why",
             run.state,
         )
-    return Standing(
+    return Deficit(
         run_id=run.id,
         lane=lane,
         agent=lanes[lane].agent,
@@ -190,7 +190,7 @@ def _count_tried_moves(agent: Valuing, cells: Cells) -> tuple[int, int]:
 
 
 def loss_view(
-    standing: Standing,
+    standing: Deficit,
     compared: Sequence[ComparedMove],
     learner_before: Callable[[int], ValuedTable],
     practised_steps: int | None,

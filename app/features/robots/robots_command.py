@@ -95,19 +95,19 @@ def _built_in(creature: Creature) -> dict[str, Any]:
 
 def _stored(stored: "StoredRobot") -> dict[str, Any]:
     hidden = " It is hidden." if stored.hidden else ""
-    made = stored.robot
+    robot = stored.robot
     return {
         "id": stored.id,
         "name": stored.name,
         "title": stored.name,
         "description": f"Stored as {stored.id}.{hidden}",
         "hidden": stored.hidden,
-        **_robot(made, own_gait(made)),
+        **_robot(robot, own_gait(robot)),
     }
 
 
-def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
-    return {"legs": len(made.legs), "gait": gait_as_json(gait), "robot": as_mapping(made)}
+def _robot(robot: Robot, gait: str | GaitSpec) -> dict[str, Any]:
+    return {"legs": len(robot.legs), "gait": gait_as_json(gait), "robot": as_mapping(robot)}
 
 
 def show_robot(
@@ -212,34 +212,38 @@ def _millimetres(metres: float) -> str:
     return f"{round(1000 * metres)}"
 
 
-def _sentences(known: Preview) -> list[str]:
-    fits = "fits into memory" if known.table_fits else "does not fit into memory"
-    told = [
-        f"A table has {known.states:,} states with {known.actions:,} actions each, "
-        f"{known.values:,} values: it {fits}.",
-        f"Without slip it advances {1000 * known.law_m_per_step:.1f} mm a step, "
-        f"{known.law_m:.2f} m in {RACE_STEPS}.",
+def _sentences(preview: Preview) -> list[str]:
+    fits = "fits into memory" if preview.table_fits else "does not fit into memory"
+    sentences = [
+        f"A table has {preview.states:,} states with {preview.actions:,} actions each, "
+        f"{preview.values:,} values: it {fits}.",
+        f"Without slip it advances {1000 * preview.law_m_per_step:.1f} mm a step, "
+        f"{preview.law_m:.2f} m in {RACE_STEPS}.",
     ]
-    if known.out_of_reach is not None:
-        told.append(f"It cannot walk on this grid: {known.out_of_reach}.")
-    if known.largest_side_m is not None:
-        safe = "none" if known.safe_side_m is None else f"up to {known.safe_side_m:g} m"
-        told.append(
-            f"It walks on grids of up to {known.largest_side_m:g} m; every action is always "
+    if preview.out_of_reach is not None:
+        sentences.append(f"It cannot walk on this grid: {preview.out_of_reach}.")
+    if preview.largest_side_m is not None:
+        safe = "none" if preview.safe_side_m is None else f"up to {preview.safe_side_m:g} m"
+        sentences.append(
+            f"It walks on grids of up to {preview.largest_side_m:g} m; every action is always "
             f"possible on {safe}."
         )
-    if known.beside_grid is not None:
-        told.append(f"It walks beside its grid: {known.beside_grid}.")
-    if not known.stands:
-        told.append("It does not stand even on all of its feet.")
-    if known.tips:
-        told.append(f"It tips: the least support margin is {_millimetres(known.margin_m)} mm.")
-    if known.better is not None:
-        told.append(
-            f"With the groups {gait_text(known.better.gait)} it stands: "
-            f"{_millimetres(known.better.margin_m)} mm, {known.better.states:,} states."
+    if preview.beside_grid is not None:
+        sentences.append(f"It walks beside its grid: {preview.beside_grid}.")
+    if not preview.stands:
+        sentences.append("It does not stand even on all of its feet.")
+    if preview.tips:
+        sentences.append(
+            f"It tips: the least support margin is {_millimetres(preview.margin_m)} mm."
         )
-    elif known.tips:
-        told.append("No other groups that were tried let it stand.")
-    told.append(f"Learner to begin with: {known.recommended_agent}. {known.recommended_because}")
-    return told
+    if preview.better is not None:
+        sentences.append(
+            f"With the groups {gait_text(preview.better.gait)} it stands: "
+            f"{_millimetres(preview.better.margin_m)} mm, {preview.better.states:,} states."
+        )
+    elif preview.tips:
+        sentences.append("No other groups that were tried let it stand.")
+    sentences.append(
+        f"Learner to begin with: {preview.recommended_agent}. {preview.recommended_because}"
+    )
+    return sentences

@@ -63,8 +63,8 @@ class RobotChangeBody(PatchBody):
 
     def changes(self) -> dict[str, Any]:
         """Return the given fields."""
-        given = {name: getattr(self, name) for name in type(self).model_fields}
-        return {name: value for name, value in given.items() if value is not None}
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in values.items() if value is not None}
 
 
 @router.post(

@@ -371,18 +371,18 @@ _REPEATED = {"gaits": "--gait", "robots": "--robot", "agents": "--agent", "world
 
 
 def _experiment(config: ExperimentConfig) -> CodeView:
-    name, given = config.experiment, _experiment_differences(config)
+    name, differences = config.experiment, _experiment_differences(config)
     options: list[tuple[str, str]] = []
-    for key, value in given.items():
+    for key, value in differences.items():
         if key in _REPEATED:
-            options += [(_REPEATED[key], _part(one)) for one in value]
+            options += [(_REPEATED[key], _part(element)) for element in value]
         elif key == "observations":
             options.append(("--observation", ",".join(value)))
         else:
             values = value if isinstance(value, list) else [value]
             options.append((f"--{key.replace('_', '-')}", ",".join(map(_text, values))))
     program = f"hexapods {config.preset.command}"
-    call = _call("experiment", repr(name), {"folder": f"{name}-results", **given})
+    call = _call("experiment", repr(name), {"folder": f"{name}-results", **differences})
     python = (
         f"{_IMPORT}\n\n"
         'if __name__ == "__main__":  # its trials have processes of their own\n'

@@ -40,7 +40,7 @@ def _verify(data: bytes, file: str, options: VerifyOptions) -> int:
             "rounding": outcome.rounding,
             "differences": differences,
             "version_note": note,
-            "standings": [to_json(one) for one in tournament.standings],
+            "standings": [to_json(standing) for standing in tournament.standings],
         }
         print(json.dumps(shown))
         return FAILED if differences and not is_rounded else 0
@@ -66,20 +66,20 @@ def _verify(data: bytes, file: str, options: VerifyOptions) -> int:
 
 def _show_ranking(tournament: "TournamentFile") -> None:
     """Print the standings as the file has them."""
-    entries = {one.number: one for one in tournament.entries}
-    names = {number: f"{one.name} ({number})" for number, one in entries.items()}
+    entries = {entry.number: entry for entry in tournament.entries}
+    names = {number: f"{entry.name} ({number})" for number, entry in entries.items()}
     rows = []
-    for one in tournament.standings:
-        entered = entries[one.number].entry if one.number in entries else None
+    for standing in tournament.standings:
+        entered = entries[standing.number].entry if standing.number in entries else None
         rows.append(
             (
-                _ranks(one.best_rank, one.worst_rank),
-                names.get(one.number, f"({one.number})"),
+                _ranks(standing.best_rank, standing.worst_rank),
+                names.get(standing.number, f"({standing.number})"),
                 "" if entered is None else visible(name_of(entered.agent, entered.settings)),
-                f"{one.iqm_m:.3f}",
-                f"{one.low_m:.3f}–{one.high_m:.3f}",
-                str(one.failures or ""),
-                ", ".join(str(other) for other in one.not_separable) or "–",
+                f"{standing.iqm_m:.3f}",
+                f"{standing.low_m:.3f}–{standing.high_m:.3f}",
+                str(standing.failures or ""),
+                ", ".join(str(other) for other in standing.not_separable) or "–",
             )
         )
     head = ("rank", "name", "agent", "IQM m", "95\u00a0%", "failed", "not separable from")

@@ -32,11 +32,11 @@ _FIRST = (
 def command(config: Mapping[str, Any]) -> str:
     """Return the shell command of an experiment: its seeds and all options other than defaults."""
     name, chosen = config["experiment"], by_option(config)
-    given: dict[str, Any] = {"simulator": config["simulator"]}
+    options: dict[str, Any] = {"simulator": config["simulator"]}
     if "agents" in PRESETS[name].fields:
-        given["agents"] = tuple(config["agents"])
+        options["agents"] = tuple(config["agents"])
     usual = {"agents": list(default_agents(PRESETS[name])), "simulator": ExperimentConfig.simulator}
-    defaults = by_option(to_json(experiment_config(name, given))) | usual
+    defaults = by_option(to_json(experiment_config(name, options))) | usual
     arguments = ["hexapods", *PRESETS[name].command.split()]
     for field in dict.fromkeys((*_FIRST, *chosen)):
         if field in chosen and (field in ("seeds", "seed") or chosen[field] != defaults.get(field)):
@@ -48,10 +48,10 @@ def command(config: Mapping[str, Any]) -> str:
 def option_values(value: Any) -> list[str]:
     """Return an option's arguments: one comma-separated list, or each alone if one is JSON."""
     values = value if isinstance(value, list) else [value]
-    plain = [_as_word(one) for one in values]
+    plain = [_as_word(value) for value in values]
     if None not in plain:
         return [",".join(map(str, plain))]
-    return [one or json.dumps(value) for one, value in zip(plain, values, strict=True)]
+    return [word or json.dumps(value) for word, value in zip(plain, values, strict=True)]
 
 
 def _as_word(value: Any) -> str | None:

@@ -25,7 +25,7 @@ def report_files(
         results: the results that were summarised, by trial key.
     """
     yield SUMMARY, (json.dumps(summary, allow_nan=False) + "\n").encode()
-    set_aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    set_aside = {trial["key"]: trial["reason"] for trial in summary["trials"]["set_aside"]}
     yield (
         TRIALS_TABLE,
         trials_csv(from_json(ExperimentConfig, summary["config"]), results, set_aside),

@@ -201,7 +201,7 @@ def test_a_claim_has_its_verdict_in_every_case_and_its_evidence(
     assert headings_below(shown, "The paper’s claims over all seeds") == [
         as_shown(claim["claim"]) for claim in summary["claims"]
     ]
-    assert headings_below(shown, "Findings") == [one["heading"] for one in summary["story"]]
+    assert headings_below(shown, "Findings") == [section["heading"] for section in summary["story"]]
     assert "2000 resamples" in text
 
 

@@ -19,7 +19,7 @@ LRO = "left-right-origin"
 
 
 @pytest.mark.parametrize(
-    ("name", "given"),
+    ("name", "values"),
     [
         ("table1", {}),
         ("figure4", {"seeds": 7, "seed": 3, "observations": ("commanded",)}),
@@ -34,9 +34,9 @@ LRO = "left-right-origin"
     ],
 )
 def test_the_command_on_the_page_reproduces_the_experiment(
-    name: str, given: dict[str, Any]
+    name: str, values: dict[str, Any]
 ) -> None:
-    tried = experiment_config(name, given)
+    tried = experiment_config(name, values)
     typed = shlex.split(command(to_json(tried)))
     assert _understood(typed) == tried
 
@@ -45,9 +45,9 @@ def _understood(typed: list[str]) -> ExperimentConfig:
     """Parse a command line as `hexapods` does."""
     words = typed[1:]
     _, bound, _ = program_of(words).parse_args(words, print_error=False, exit_on_error=False)
-    given = bound.arguments
-    trials = given.pop("trials", TrialOptions())
+    arguments = bound.arguments
+    trials = arguments.pop("trials", TrialOptions())
     if words[0] == "sweep":
-        return sweep_command.config_of(trials, given)
-    worlds = given.get("worlds", experiment_command.WorldOptions())
-    return experiment_command.config_of(given["experiment"], trials, worlds)
+        return sweep_command.config_of(trials, arguments)
+    worlds = arguments.get("worlds", experiment_command.WorldOptions())
+    return experiment_command.config_of(arguments["experiment"], trials, worlds)

@@ -98,7 +98,7 @@ def test_interrupted_sweep_is_resumed_by_the_same_command(tmp_path: Path) -> Non
     file = tmp_path / "kept" / TRIALS
     before: dict[str, Any] = {}
     # SIGINT to the process group, as a terminal sends it; SIGTERM to the process.
-    for end in (lambda one: os.killpg(one.pid, signal.SIGINT), subprocess.Popen.terminate):
+    for end in (lambda process: os.killpg(process.pid, signal.SIGINT), subprocess.Popen.terminate):
         options = ("--seeds", "400", "--workers", "1", "--out", "kept")
         process = start("sweep", *ONE_GAIT, *options, folder=tmp_path)
         while not file.exists() or len(file.read_bytes().splitlines()) < len(before) + 20:

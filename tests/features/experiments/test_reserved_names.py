@@ -33,5 +33,5 @@ def test_every_name_that_is_used_otherwise_is_reserved() -> None:
         used |= set(row.model_fields)
     # Settings are arguments beside the fields: `experiment_config(name, {"alpha": ...})`.
     used |= {field.name for field in fields(ExperimentConfig)}
-    own = {field.name for field in fields(TrainingConfig)}
-    assert {name for name in used - own if not name.startswith("_")} == RESERVED
+    field_names = {field.name for field in fields(TrainingConfig)}
+    assert {name for name in used - field_names if not name.startswith("_")} == RESERVED

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.features.explanations.loss import Standing, count_tried, loss_view, passed_over
+from app.features.explanations.loss import Deficit, count_tried, loss_view, passed_over
 from hexapods.agents.afterstate_q import AfterstateQ
 from hexapods.agents.protocol import Problem, Transition
 from hexapods.agents.q_learning import QLearning
@@ -17,7 +17,7 @@ from hexapods.runs.move_comparison import ComparedMove
 HOME: Cells = (0, 0, 0)
 PAIRS = ((1, 4), (2, 5), (3, 6))
 MADE, BEST = Action(0, 1), Action(1, 2)
-BEHIND = Standing("race", 0, "q-learning", "paper", is_ranked=True, ahead=1, behind_m=0.1)
+BEHIND = Deficit("race", 0, "q-learning", "paper", is_ranked=True, ahead=1, behind_m=0.1)
 
 
 def learner(kind: type[TabularLearner] = QLearning, **rewards_m: float) -> Any:
