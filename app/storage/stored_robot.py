@@ -17,8 +17,8 @@ MAX_ROBOTS = 500
 
 
 @dataclass(frozen=True, kw_only=True)
-class StoredRobot(Record):
-    """A stored robot; all but its id may change while that stays.
+class RobotFields(Record):
+    """What is stored of a robot beside its document; all but its id may change while that stays.
 
     Attributes:
         id: beginning of the SHA-256 of its document.
@@ -41,6 +41,10 @@ class StoredRobot(Record):
     choices: Mapping[str, Any] | None = None
     file: str | None = None
     created_at: datetime = field(default_factory=lambda: datetime.now(UTC))
+
+
+class StoredRobot(RobotFields):
+    """A stored robot, whose document this process's library has."""
 
     @property
     def robot(self) -> Robot:

@@ -5,7 +5,7 @@ from typing import Any
 
 from app.answer import Answer
 from app.storage.database.robots import RobotOrigin
-from app.storage.stored_robot import StoredRobot
+from app.storage.stored_robot import RobotFields, StoredRobot
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.gait import AnyGait, resolve
 from hexapods.domain.kinematics import legs_of
@@ -32,7 +32,7 @@ class StoredLeg(Answer):
 
 
 @dataclass(frozen=True, kw_only=True)
-class StoredRobotView(StoredRobot):
+class StoredRobotView(RobotFields):
     """A stored robot.
 
     Attributes:
@@ -84,7 +84,7 @@ class WholeRobotView(StoredRobotView):
         robot: by value, as a request may have it.
     """
 
-    robot: dict[str, Any] = field()  # type: ignore[assignment]
+    robot: dict[str, Any]
     preview: Preview
     found: FoundView | None
 
