@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from prometheus_client.metrics_core import Metric
 from sqlalchemy import ColumnElement, and_, inspect
 
-from app.feature import Feature, blaming, hidden_ids
+from app.feature import Feature, blaming, hidden_ids, stage_members
 from app.installed_features import Catalogue
 from app.jobs.queue import Owner
 from app.setting_fields import PREFIX
@@ -84,10 +84,7 @@ class Features:
 
     def stage_members(self) -> dict[str, Record]:
         """Return what each stage keeps for features, by name, as it begins."""
-        kinds = {
-            name: kind for feature in self.classes for name, kind in feature.stage_members.items()
-        }
-        return {name: kind() for name, kind in kinds.items()}
+        return {name: kind() for name, kind in stage_members(self.classes).items()}
 
     def owner_of(self, run_id: str) -> Owner | None:
         """Return who waits for a run; None for an operator.

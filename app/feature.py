@@ -240,3 +240,8 @@ def blaming(feature: type[Feature], what: str) -> Iterator[None]:
             f"the feature {feature.name} fails in {what}: {type(error).__name__}: {error}; "
             f"start without it by {PREFIX}WITHOUT={feature.name}"
         ) from error
+
+
+def stage_members(features: Iterable[type[Feature]]) -> dict[str, type[Record]]:
+    """Return the records that each stage keeps for features, by their name in the stage's state."""
+    return {name: kind for feature in features for name, kind in feature.stage_members.items()}

@@ -16,7 +16,7 @@ from app.events.event_records import (
     RobotsEvent,
     ViewersEvent,
 )
-from app.feature import Feature
+from app.feature import Feature, stage_members
 from app.stage.stage import StageView, stage_view
 from hexapods.shows.scene_view import SceneView
 
@@ -60,8 +60,7 @@ class EventBodies(Answer):
 @cache
 def snapshot_view(features: tuple[type[Feature], ...]) -> type[SnapshotView]:
     """Return the record of a snapshot, whose stage has what it keeps for features."""
-    kinds = {name: kind for feature in features for name, kind in feature.stage_members.items()}
-    return extended(SnapshotView, {"stage": stage_view(tuple(kinds.items()))})
+    return extended(SnapshotView, {"stage": stage_view(tuple(stage_members(features).items()))})
 
 
 def event_bodies(features: Iterable[type[Feature]]) -> type[EventBodies]:

@@ -12,14 +12,14 @@ from app.api.fields import known_members
 from app.api.policy import OPERATOR, WATCH_STAGE, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.schemas import StageBody
-from app.feature import Feature
+from app.feature import Feature, stage_members
 from app.stage.stage import stage_view
 
 
 def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
     """Return the routes of the stage, with what it keeps for features."""
     router = api_router(prefix="/stage", tags=["stage"])
-    kinds = {name: kind for feature in features for name, kind in feature.stage_members.items()}
+    kinds = stage_members(features)
     view = stage_view(tuple(kinds.items()))
     added: dict[str, Any] = {
         name: (Annotated[kind, known_members(kind)] | None, None) for name, kind in kinds.items()

@@ -24,6 +24,7 @@ from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView
 from app.api.run_views import RunPage
 from app.events.run_view import RaceView, TrainingView
+from app.feature import stage_members
 from app.installed_features import load
 from app.server import create_app
 from app.settings import Settings
@@ -232,7 +233,7 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield RecordingView, api.get(f"/races/{race['id']}/recording")
     for clock in ("paper", "wall", "free"):
         yield TimelineView, api.get(f"/races/{race['id']}/timeline?clock={clock}")
-    yield stage_view(load().classes), api.get("/stage")
+    yield stage_view(tuple(stage_members(load().classes).items())), api.get("/stage")
     yield options_view(load().classes), api.get("/options")
 
 

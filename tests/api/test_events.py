@@ -15,8 +15,8 @@ from app.events.event_records import DeletedRun, EvaluationEvent
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
-from app.storage.json_text import json_text
 from app.storage.run import LIVE, QUEUED
+from hexapods.domain.records import Record, to_json_bytes
 from tests.storage.stores import training
 from tests.timeouts import LONG_S
 
@@ -128,11 +128,11 @@ def test_snapshot_is_read_and_encoded_off_the_event_loop(
     monkeypatch.setattr(events, "NEWEST_RUNS", 200)
     threads: list[threading.Thread] = []
 
-    def recorded(data: Any) -> str:
+    def recorded(record: Record) -> bytes:
         threads.append(threading.current_thread())
-        return json_text(data)
+        return to_json_bytes(record)
 
-    monkeypatch.setattr("app.api.events.json_text", recorded)
+    monkeypatch.setattr("app.api.events.to_json_bytes", recorded)
 
     async def test() -> None:
         async with Stream(services) as stream:
