@@ -99,7 +99,7 @@ class Child:
 
         Args:
             target: function of a module, called in the process with its end of the pipe.
-            set_up: done before.
+            set_up: done in the process before.
         """
         self._target, self._set_up = target, set_up
         self.is_killed = False
@@ -124,16 +124,16 @@ class Child:
             self.kill()
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Wait until it has sent something, or has exited; False if it did neither in this time.
+        """Wait until the process has sent a message or has exited; False after the timeout.
 
-        After an exit `pipe.poll()` says whether there is something that it has sent before.
+        After an exit `pipe.poll()` says whether a message is left in the pipe.
         """
         return bool(connection.wait([self.pipe, self._process.sentinel], timeout_s))
 
     def stopped_s(self) -> float:
-        """Return for how long it was seen stopped by a signal such as SIGSTOP [s], else 0.
+        """Return the time since which a signal such as SIGSTOP has stopped the process [s], else 0.
 
-        To be asked every few seconds: the time in which this process was stopped is not counted.
+        Call it every few seconds: the time in which the caller itself was stopped is not counted.
         """
         now_s, looked_s = time.monotonic(), self._looked_s
         self._looked_s = now_s
@@ -145,7 +145,7 @@ class Child:
         return now_s - self._stopped_since_s
 
     def memory_bytes(self) -> int:
-        """Return its resident memory; Linux only, else 0."""
+        """Return the resident memory of the process [bytes]; Linux only, else 0."""
         try:
             pages = int(Path(f"/proc/{self.pid}/statm").read_bytes().split()[1])
         except OSError:  # it has exited, or this is not Linux
@@ -153,7 +153,7 @@ class Child:
         return pages * os.sysconf("SC_PAGE_SIZE")
 
     def kill(self) -> None:
-        """Kill it (SIGKILL) and its group: at once, or as soon as it starts."""
+        """Kill the process and its group by SIGKILL: at once, or as soon as it starts."""
         self.is_killed = True
         pid = self.pid  # another thread may end it meanwhile
         with suppress(ValueError):  # it has ended

@@ -121,7 +121,7 @@ def with_settings_of(agent: str, base: type[Body], suffix: str) -> type[Body]:
 
 
 def _optional_settings(agent: str) -> dict[str, Any]:
-    """Return fields of an agent's settings, none of them required: a training may say them."""
+    """Return the fields of an agent's settings; none is required, as a training may have them."""
     return {
         name: (field_of([setting]), None if setting.default is REQUIRED else setting.default)
         for name, setting in agent_settings(agent).items()

@@ -151,11 +151,11 @@ class OneStepExplainer(Generic[Learner]):
         return reward, self.objective_term()
 
     def return_rule(self, reward: str, later: str) -> str:
-        """Return the formula of the return, of a reward and the value of what follows it."""
+        """Return the formula of a return from the names of a reward and of the value after it."""
         return f"{reward} − R̄ + {later}" if self.learner._is_average else f"{reward} + γ · {later}"
 
     def objective_term(self) -> Term:
-        """Return the term of `return_rule` that is of the learner and not of the step."""
+        """Return the term of `return_rule` that the objective adds: the average reward, or γ."""
         if self.learner._is_average:
             average_m = self.learner._average_m
             return Term("R̄", average_m, "average reward of a step, as learned so far [m]")
@@ -319,14 +319,17 @@ class PrioritizedSweepingExplainer(OneStepExplainer[PrioritizedSweeping]):
         )
 
     def direct_update(self) -> tuple[str, ValueUpdate | None]:
-        """Return a summary, and the first update of the step's own value, if it was due."""
+        """Return a summary, and the first update of the step's own value; None without one."""
         place = self.transition.observation, self.transition.action
         direct = next(
             (update for update in self.updates if (update.observation, update.action) == place),
             None,
         )
-        summary = "Its own value was not worked on: others would change more, or it hardly."
-        if direct is not None:
+        if direct is None:
+            summary = (
+                "The step's own value was not updated: others would change more, or it too little."
+            )
+        else:
             summary = summary_of(direct)
         return f"{summary} {planning_summary(self.updates)}", direct
 

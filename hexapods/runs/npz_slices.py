@@ -24,11 +24,11 @@ class NpzSlices:
     """An `.npz` file as `numpy.savez` writes it, of which parts are read. Thread-safe.
 
     Attributes:
-        arrays: by their names where they are, and their shapes and types.
+        arrays: position, shape and type of each array, by its name.
     """
 
     def __init__(self, file: IO[bytes]) -> None:
-        """Read where its arrays are.
+        """Read the positions, shapes and types of the arrays.
 
         Args:
             file: the file, which can be sought in; the caller closes it.

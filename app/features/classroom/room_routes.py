@@ -155,7 +155,7 @@ def list_rooms(
 def get_room(
     services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
 ) -> RecordResponse[RoomView]:
-    """Return the room as who asks may see it: teacher, participant, or anyone with the code."""
+    """Return what a client may see of a room: the teacher, a participant, or anyone else."""
     room = services.of(Rooms).get(code)
     return RecordResponse(room_view(request, services, room, dict(reader or ()).get(room.code)))
 

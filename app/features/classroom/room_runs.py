@@ -91,7 +91,7 @@ class RoomRuns:
         return run is not None and not run.is_shown and (run.room, run.seed) not in reader
 
     def note_shown(self, room: Room, runs: Iterable[RoomRun]) -> None:
-        """Show runs of a room to others; the database has been told before."""
+        """Mark runs of a room as shown to others; the database has them so already."""
         for run in runs:
             self._runs[run.run_id] = room.runs[run.run_id] = run._replace(is_shown=True)
 

@@ -434,7 +434,7 @@ class Rooms:
         return None
 
     def leave(self, code: str, seed: int) -> None:
-        """Leave a room; what was answered and run stays.
+        """Remove a participant from a room; their answers and runs stay.
 
         Raises:
             NotFound: if there is no such room.

@@ -148,7 +148,7 @@ def get_tournament_file(
 @router.delete("/{tournament_id}", status_code=204, summary="Delete a tournament")
 @policy(access=OPERATOR)
 def delete_tournament(services: ServicesDep, tournament_id: TournamentPath) -> None:
-    """Delete it, with its entries and their tables; what is judged of it is given up."""
+    """Delete a tournament with its entries and their tables; judging it ends."""
     services.of(Tournaments).delete(tournament_id)
 
 
