@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 from cyclopts.help import DefaultFormatter, PanelSpec
 from rich.box import Box
 from rich.console import Console
@@ -44,7 +44,7 @@ def run(arguments: Sequence[str]) -> int:
                 verbs = [verb for verb in apps[-1] if not verb.startswith("-")]
                 raise CycloptsError(msg=f"name a command: {', '.join(verbs)}")
     except (CycloptsError, HexapodError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
+        print(f"{name}: {_sentence(error)}", file=sys.stderr)
         return 2
     try:
         with stored_robots_known(bound.arguments.get("data")):
@@ -56,6 +56,16 @@ def run(arguments: Sequence[str]) -> int:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
     return code or 0
+
+
+def _sentence(error: CycloptsError | HexapodError) -> str:
+    """Return what is wrong with the arguments, and what is valid."""
+    if isinstance(error, MissingArgumentError) and error.argument is not None:
+        option, valid = error.argument, error.argument.parameter.help
+        return f"{error.keyword or option.name} needs a value{f': {valid}' if valid else ''}"
+    if isinstance(error, UnusedCliTokensError):
+        return f"there is no argument {', '.join(map(repr, error.unused_tokens or ()))}; see --help"
+    return str(error)
 
 
 def program_of(arguments: Sequence[str] | None = None) -> App:

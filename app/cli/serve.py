@@ -6,7 +6,8 @@ import secrets
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from functools import partial
 from typing import Annotated, Any
@@ -15,8 +16,9 @@ from cyclopts import Parameter
 
 from app.cli.options import Data, WholeNumber
 from app.cli.program import without_garbage_collection
+from app.cli.setting_options import flag
 from app.feature_settings import installed_settings
-from app.setting_fields import Switch, kind_of
+from app.setting_fields import Switch, kind_of, variable_of
 from app.settings import (
     Settings,
     is_loopback,
@@ -25,6 +27,7 @@ from app.settings import (
     read_without,
     remove_secrets,
 )
+from hexapods.domain.errors import InvalidInput
 
 THREADS_END_S = 2.0
 """Time for threads to end that still compute for requests once everything else has ended."""
@@ -73,7 +76,8 @@ def serve(
         options["host"] = host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         options["token"] = read_token() or secrets.token_urlsafe(24)
     options |= switches
-    of_features = read_feature_settings(**options)
+    with _naming_options(options):
+        of_features = read_feature_settings(**options)
     # Of a token of the environment no link is printed unless it is asked for: it would be in a log.
     shows_links = share or any(
         settings.audience and any(switches.get(declared.name) for declared in fields(settings))
@@ -84,7 +88,8 @@ def serve(
         bound = host or os.environ.get("HEXAPODS_HOST") or Settings.host
         if is_loopback(bound):
             options["token"], shows_links = secrets.token_urlsafe(24), True
-    settings = read_settings(**options)
+    with _naming_options(options):
+        settings = read_settings(**options)
     remove_secrets()  # no process that is started from here on needs them
     with without_garbage_collection():
         from app import server  # noqa: PLC0415 - its imports take most of a second
@@ -92,6 +97,19 @@ def serve(
     server.serve(settings, on_ready=partial(show_links, settings) if shows_links else None)
     _end_with_threads()
     return 0
+
+
+@contextmanager
+def _naming_options(options: Mapping[str, Any]) -> Iterator[None]:
+    """Name the options of the command in errors about settings, in place of their variables."""
+    try:
+        yield
+    except InvalidInput as error:
+        message = str(error)
+        for name, value in options.items():
+            if value is not None:
+                message = message.replace(f"{variable_of(name)} must", f"{flag(name)} must")
+        raise InvalidInput(message) from error
 
 
 def _end_with_threads() -> None:
