@@ -172,6 +172,8 @@ class AgentOptions:
 
 def _parameter(setting: DeclaredSetting, **option: Any) -> inspect.Parameter:
     default = None if setting.default is REQUIRED else setting.default
+    if setting.choices:
+        option["completer"] = lambda _: [*setting.choices]
     return inspect.Parameter(
         setting.name,
         inspect.Parameter.KEYWORD_ONLY,

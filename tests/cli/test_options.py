@@ -120,4 +120,5 @@ def test_bash_completes_commands_options_and_values(tmp_path: Path) -> None:
     assert completed("runs sh") == ["show"]
     assert completed("train --al") == ["--alpha"]
     assert completed("train --simulator kin") == ["kinematic"]
+    assert completed("train --objective av") == ["average"]
     assert completed("train --agent sarsa") == ["sarsa", "sarsa-lambda"]
