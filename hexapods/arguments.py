@@ -1,4 +1,4 @@
-"""Arguments of the public functions: what a person may write for an agent, a robot or a world."""
+"""Arguments of the public functions: the forms of an agent, a robot or a world that they accept."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -84,11 +84,11 @@ NOT_GIVEN: Any = _NotGiven()
 def given_arguments(
     arguments: Mapping[str, Any], names: Iterable[str], rest: str
 ) -> dict[str, Any]:
-    """Return the arguments that a caller has given.
+    """Return the arguments that a caller has given, by name, without the defaults `NOT_GIVEN`.
 
     Args:
-        arguments: all of a function, as `locals()` at its beginning.
-        names: of the arguments that count.
+        arguments: all arguments of a function, as `locals()` at its beginning.
+        names: names of the arguments that count.
         rest: name of its `**` argument, whose content is added.
     """
     arguments_given = {name: arguments[name] for name in names if arguments[name] is not NOT_GIVEN}
@@ -126,8 +126,8 @@ def read_walk(values: Mapping[str, Any], like: WalkingProblem | None = None) -> 
     """Return the fields of a walking problem.
 
     Args:
-        values: those that a person has given, as `hexapods.train` describes.
-        like: where the others come from, except for the world and the tolerance; None for the
+        values: fields that a person has given, as `hexapods.train` describes.
+        like: source of the other fields, except for the world and the tolerance; None for the
             defaults.
 
     Raises:
@@ -147,7 +147,7 @@ def read_walk(values: Mapping[str, Any], like: WalkingProblem | None = None) -> 
 
 
 def read_robot(value: RobotLike) -> Robot:
-    """Return a robot, whose name can be shown and stored.
+    """Return a robot from an argument, with a name that can be shown and stored.
 
     Raises:
         UnknownName, InvalidInput: if it is none.
@@ -232,7 +232,7 @@ def _refuse(name: str, valid: str, value: object) -> NoReturn:
 
 
 def plain(value: Any) -> Any:
-    """Return what is NumPy's in a value, such as numbers of `arange`, as Python's own."""
+    """Convert the NumPy numbers and arrays in a value, such as those of `arange`, to Python's."""
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, np.ndarray):

@@ -150,7 +150,7 @@ def rebuild_lane(
 
     Args:
         config: the race.
-        number: of the lane, counted from 0.
+        number: number of the lane, counted from 0.
         table: checkpoint of its agent.
 
     Raises:
@@ -203,7 +203,7 @@ def build_walkers(
         config: the race.
         tables: checkpoint of the agent of each lane, or None.
         threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
-        agents: by the number of the lane, those that are there already: policies from outside.
+        agents: policies from outside, as agents that exist already, by the number of the lane.
 
     Raises:
         UnknownName, InvalidInput: if a lane's agent or one of its settings is invalid.
@@ -256,14 +256,14 @@ def sensor_noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
     """Return a factory of the sensor-noise generator for a step count.
 
     Args:
-        seed: of the run.
+        seed: seed of the run.
         key: further part of the spawn key; none for a practice.
     """
     return lambda steps: generator(seed, SENSING, *key, steps)
 
 
 def _offered_by(config: TrainingConfig) -> dict[str, Any]:
-    """Return what a training offers to its agent's constructor: its fields and the settings."""
+    """Return the arguments that an agent's constructor may take, from a training with settings."""
     return {
         **{name: value for name, value in vars(config).items() if name not in _NOT_OFFERED},
         **complete(agent_settings(config.agent), config.settings, config.agent),
@@ -271,15 +271,15 @@ def _offered_by(config: TrainingConfig) -> dict[str, Any]:
 
 
 def _offered_with(table: Checkpoint) -> Mapping[str, Any]:
-    """Return what the training of a table has offered to its agent."""
+    """Return the arguments that an agent's constructor may take, from the training of a table."""
     config = table.meta["config"]
     return {**config, **config["settings"]}
 
 
 def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
-    """Return what a race offers to the agent of a lane without a table.
+    """Return the arguments that an agent's constructor may take in a lane without a table.
 
-    To one that keeps learning this is what a training of as many steps would offer.
+    For an agent that keeps learning they are those of a training of as many steps.
     """
     if not lane.keep_learning:
         return complete(agent_settings(lane.agent), lane.settings, lane.agent)

@@ -43,8 +43,8 @@ class Benchmark:
     """A finished benchmark, as `benchmark` returns it.
 
     Attributes:
-        config: all that decides its result.
-        content: its score file: plain types, fit for JSON (docs/benchmark.md).
+        config: config of the benchmark, which decides its result.
+        content: content of its score file: plain types, fit for JSON (docs/benchmark.md).
     """
 
     config: BenchmarkConfig
@@ -85,7 +85,7 @@ class Benchmark:
 
     @property
     def failed(self) -> Mapping[str, str]:
-        """Why each run failed that did, by task, steps of practice and seed."""
+        """Errors of the runs that failed, by task, steps of practice and seed."""
         return {
             task["name"]
             if error["seed"] is None
@@ -113,7 +113,7 @@ class Benchmark:
         )
 
     def row(self) -> str:
-        """Return it as a line of the table in docs/benchmark.md, in Markdown."""
+        """Return the benchmark as a row of the table in docs/benchmark.md, in Markdown."""
         return row_of(self.content)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -189,8 +189,8 @@ def benchmark(
         file: path of the score file. Runs are kept beside it until all are done: called again,
             the benchmark goes on where it ended. None keeps nothing.
         workers: number of processes; None for one per core.
-        on_run: called with how many runs are done, and of how many.
-        settings: of the agent, such as `alpha`.
+        on_run: called with the number of runs done so far, and of all.
+        settings: settings of the agent, such as `alpha`.
 
     A run that fails counts as 0, and `failed` names it with its error.
 
@@ -231,10 +231,10 @@ def run_benchmark(
     Args:
         config: the benchmark.
         spec: the workers.
-        score_file: whose runs count, beside which others are kept until all are done, and which
-            is written then; None keeps nothing.
-        on_run: as of `benchmark`.
-        may_continue: as of `run_trials`.
+        score_file: path of the score file, whose runs count. Others are kept beside it until all
+            are done; then it is written. None keeps nothing.
+        on_run: as in `benchmark`.
+        may_continue: as in `run_trials`.
 
     Raises:
         InvalidInput: if runs cannot be kept.

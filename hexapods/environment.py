@@ -122,8 +122,8 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         """Put the robot at rest on the start line; there are no options.
 
         Args:
-            seed: of `np_random`, and of what a training with this seed draws.
-            options: none are known.
+            seed: seed of `np_random`, and of the draws of a training with this seed.
+            options: ignored; there are none.
         """
         super().reset(seed=seed, options=options)
         episode_seed = int(self.np_random.integers(2**32)) if seed is None else int(seed)
@@ -168,7 +168,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         return self._camera.picture(self._simulator.pose(self._state))
 
     def close(self) -> None:
-        """Free what rendering holds."""
+        """Close the camera of `render`, which frees its OpenGL context."""
         if self._camera is not None:
             self._camera.close()
             self._camera = None

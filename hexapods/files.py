@@ -19,7 +19,7 @@ def path_of(value: object, what: str) -> Path:
 
     Args:
         value: the path.
-        what: of which it is, to begin an error message: `a table`.
+        what: kind of file, to begin an error message: `a table`.
 
     Raises:
         InvalidInput: if it is none, or cannot be the path of anything.
@@ -86,7 +86,7 @@ class DrainedBuffer(io.RawIOBase):
         return len(data)
 
     def drain(self) -> bytes:
-        """Return what was written since the last call."""
+        """Return the bytes written since the last call, and clear the buffer."""
         data = b"".join(self._parts)
         self._parts.clear()
         return data

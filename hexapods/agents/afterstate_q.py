@@ -50,5 +50,5 @@ class AfterstateQ(QLearning):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        """Check a saved state as `TabularLearner` does, and require its average reward."""
         TabularLearner.check_state({**state, "average": state["average"]})

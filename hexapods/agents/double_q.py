@@ -60,7 +60,7 @@ class DoubleQ(TabularLearner):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        """Check a saved state as `TabularLearner` does, and the values of both tables."""
         TabularLearner.check_state(state)
         halves = state["halves"]
         if halves.shape != (2, len(state["q"])) or halves.dtype.kind != "f":

@@ -176,10 +176,10 @@ class CycleBandit:
 
     @staticmethod
     def check(arrays: Mapping[str, NDArray[Any]], policies: int) -> None:
-        """Check what `load` relies on, if there is a bandit's state.
+        """Check the bandit's arrays in a saved state, if it has any.
 
         Raises:
-            KeyError, ValueError: if it is not a state of a bandit with so many policies.
+            KeyError, ValueError: if the arrays are not those of a bandit with so many policies.
         """
         if "cycle_rewards" not in arrays:
             return
@@ -204,7 +204,7 @@ class CycleBandit:
             raise ValueError("its cycle_counts are out of range")
 
     def load(self, arrays: Mapping[str, FloatArray]) -> None:
-        """Restore what `dump` returned."""
+        """Restore the state from the arrays that `dump` returned."""
         self._rewards_m, self._tried = arrays["cycle_rewards"].copy(), arrays["cycle_tried"].copy()
         (self._judged_m,) = arrays["cycle_judged"].tolist()
         self.kept, self._blocks, self._length, *rest = map(int, arrays["cycle_counts"].tolist())

@@ -23,7 +23,7 @@ from hexapods.domain.types import Action, Cells, FloatArray, IntArray
 MAX_LANDINGS = 4_000_000
 """Maximum number of landings; six legs one by one on ten cells have a million."""
 LANDING_ARRAYS = ("landings", "values", "visits")
-"""Names of the arrays of the sparse form beside `shape`: indices, and what is stored there."""
+"""Names of the arrays of the sparse form beside `shape`: indices, values and visit counts."""
 
 
 class LandingTable(ValueTable):
@@ -92,7 +92,7 @@ class LandingTable(ValueTable):
         return self._row(self._values, observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return how often the actions' landings came, (groups, cells), NaN where illegal."""
+        """Return the visit counts of the actions' landings, (groups, cells), NaN where illegal."""
         return self._row(self._visits, observation)
 
     def _row(self, table: NDArray[Any], observation: Cells) -> FloatArray:
@@ -102,7 +102,7 @@ class LandingTable(ValueTable):
         return row
 
     def _landings(self, state: int) -> IntArray:
-        """Return the landing of each column in a state, (actions,); its own where illegal."""
+        """Return the landing of each column in a state, (actions,); that state where illegal."""
         return _landings(state, self.groups, self.cells)
 
     def rows(self) -> Iterator[tuple[Cells, float, int]]:

@@ -291,7 +291,7 @@ class LinearModel:
         return _without_illegal(expected_m.reshape(groups, cells), observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return how often each action was taken in any state, (groups, cells), NaN where illegal.
+        """Return visit counts of the actions over all states, (groups, cells), NaN where illegal.
 
         Every visit teaches the model about all states.
         """
@@ -314,10 +314,10 @@ class LinearModel:
         }
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned, but not the optimism that was tuned.
+        """Load a saved state without its tuned optimism.
 
         Raises:
-            ValueError: if it is of another number of groups or cells.
+            ValueError: if the state is of another number of groups or cells.
         """
         self.load({**state, "tuned_optimism": np.array([np.nan])})
 
@@ -325,7 +325,7 @@ class LinearModel:
         """Restore a state that `state` returned.
 
         Raises:
-            ValueError: if it is of another number of groups or cells.
+            ValueError: if the state is of another number of groups or cells.
         """
         present = self.state()
         if not present.keys() <= state.keys():
@@ -353,7 +353,7 @@ class LinearModel:
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on.
+        """Check the arrays of a saved state: optimism, evidence, errors and counters.
 
         Raises:
             InvalidInput: for an optimism out of its limits.

@@ -32,7 +32,7 @@ class ValueIterationResult(NamedTuple):
 
     Attributes:
         pair_values: value of each pair of the model [m].
-        later: expected value of what follows each pair [m], undiscounted.
+        later: expected value of the state after each pair [m], undiscounted.
         mean_value: mean value of all states of the problem [m]; 0 unless it was needed.
     """
 
@@ -63,7 +63,7 @@ class ModelArrays:
         states: indices of the model's states, ascending; "place" is a position in this array.
         places: place of each pair's state.
         columns: column of each pair.
-        tries: how often each pair was tried.
+        tries: number of tries of each pair.
         rewards_m: mean reward of each pair [m].
         outcome_pairs, outcome_places, outcome_counts: number of the pair, place of the next state
             and count of each outcome.
@@ -218,7 +218,7 @@ class ModelAgent(TabularAgent):
 
     @abstractmethod
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:
-        """Add a transition to the model, and plan if it is time to."""
+        """Add a transition to the model, and plan anew if that is due."""
 
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how model and values change."""
@@ -285,7 +285,7 @@ class ModelAgent(TabularAgent):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table.
+        """Check the discount and the model of a saved state; the table is not checked here.
 
         Raises:
             InvalidInput: for a discount out of its limits.

@@ -103,7 +103,7 @@ class MultilevelModel:
         """Values of the states with which the next value iteration begins [m]: those of the plan
         for the last step. A plan follows from them and the evidence alone."""
         self._planned: _Plan | None = None
-        """None if it is out of date."""
+        """The plan; None if it is out of date."""
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the action with the highest value in the plan."""
@@ -249,7 +249,7 @@ class MultilevelModel:
         return self._of_state(self._plan.values, observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return how often each action was tried in a state, (groups, cells), NaN where illegal."""
+        """Return the visit counts of the actions in a state, (groups, cells), NaN where illegal."""
         return self._of_state(self._tries, observation)
 
     def _of_state(self, of_pairs: NDArray[Any], observation: Cells) -> FloatArray:
@@ -271,10 +271,10 @@ class MultilevelModel:
         }
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned, but not tuned settings.
+        """Load a saved state without its tuned settings.
 
         Raises:
-            ValueError: if it is of another number of groups or cells.
+            ValueError: if the state is of another number of groups or cells.
         """
         self.load({**state, "tuned": np.full(2, np.nan)})
 
@@ -282,7 +282,7 @@ class MultilevelModel:
         """Restore a state that `state` returned.
 
         Raises:
-            ValueError: if it is of another number of groups or cells.
+            ValueError: if the state is of another number of groups or cells.
         """
         shape = [self._layout.groups, self._layout.cells]
         if state["shape"].tolist() != shape:
@@ -295,7 +295,7 @@ class MultilevelModel:
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on.
+        """Check the arrays of a saved state: tuned settings, evidence, outcomes and values.
 
         Raises:
             InvalidInput: for an optimism or a discount out of its limits.

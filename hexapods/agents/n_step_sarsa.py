@@ -73,7 +73,7 @@ class NStepSarsa(TabularLearner):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        """Check a saved state as `TabularLearner` does, and the steps without an update yet."""
         TabularLearner.check_state(state)
         rewards = state["rewards"]
         if rewards.ndim != 1 or rewards.dtype.kind != "f" or not np.isfinite(rewards).all():

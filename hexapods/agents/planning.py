@@ -59,6 +59,6 @@ class PlanningLearner(TabularLearner):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        """Check a saved state as `TabularLearner` does, and the model."""
         TabularLearner.check_state(state)
         TabularModel.check(state)

@@ -196,7 +196,7 @@ class PosteriorSampling(ModelAgent):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `ModelAgent`."""
+        """Check a saved state as `ModelAgent` does, and the plan."""
         ModelAgent.check_state(state)
         groups, cells = state["shape"].tolist()
         states, values = state["plan_states"], state["plan_values"]

@@ -120,7 +120,7 @@ class PrioritizedSweeping(PlanningLearner):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `PlanningLearner`."""
+        """Check a saved state as `PlanningLearner` does, and the queue."""
         PlanningLearner.check_state(state)
         queued, priorities = state["queued"], state["priorities"]
         if (

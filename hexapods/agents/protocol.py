@@ -146,11 +146,11 @@ class Tabular(Protocol):
         """Share the table of another agent of this class, to evaluate it without a copy."""
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned from a state, but not its settings or schedule position."""
+        """Load the learned values of a saved state, but not its settings or schedule position."""
 
 
 class Node(Protocol):
-    """Node of a search tree: a simulated state, with its legal actions and where its feet are."""
+    """Node of a search tree: a simulated state, with its legal actions and foot offsets."""
 
     @property
     def legal(self) -> Sequence[Action]:

@@ -178,11 +178,11 @@ class TabularAgent(ABC):
         self.table = other.table
 
     def continue_from(self, state: AgentState) -> None:
-        """Load what was learned; the rates are those of this run, and the ε schedule restarts."""
+        """Load the learned values; the rates are those of this run, and the ε schedule restarts."""
         self._load_learned(state)
 
     def _load_learned(self, state: AgentState) -> None:
-        """Load values and visits, and in subclasses what else was learned, but no settings."""
+        """Load values and visits, in subclasses also the model or average reward; no settings."""
         self.table.load(state)
 
 
@@ -271,11 +271,11 @@ class TabularLearner(TabularAgent):
         return self._return_m(transition.reward_m, self._next_value(transition))
 
     def _return_m(self, reward_m: float, later: float, tries: int = 1) -> float:
-        """Return a reward and the value of what follows it, added up by the objective [m].
+        """Return a reward plus the mean value of the next states, by the objective [m].
 
         Args:
             reward_m: the reward [m].
-            later: sum of the values of what followed in some tries [m].
+            later: sum of the values of the next states of some tries [m].
             tries: number of these.
         """
         if self._is_average:
@@ -340,7 +340,7 @@ class TabularLearner(TabularAgent):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table.
+        """Check the rates, average reward and step count of a saved state; not the table.
 
         Raises:
             InvalidInput: for a rate out of its limits.

@@ -77,7 +77,7 @@ class TraceLearner(TabularLearner):
 
     @staticmethod
     def check_state(state: AgentState) -> None:
-        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        """Check a saved state as `TabularLearner` does, and λ and the traces."""
         TabularLearner.check_state(state)
         declare("trace_decay", TraceDecay).check(*state["trace_decay"].tolist())
         traces = state["traces"]

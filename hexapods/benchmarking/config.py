@@ -21,7 +21,7 @@ from hexapods.experiments.config import MAX_SEEDS
 from hexapods.runs.config import MAX_STEPS, agent_settings
 
 WITHOUT_PRACTICE = 0
-"""In place of a budget: that of an agent that does not learn."""
+"""Budget of an agent that does not learn."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +85,7 @@ class BenchmarkConfig(Record):
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is the whole protocol, with its root seed, so that it can be compared."""
+        """Whether this is the complete protocol with its root seed, with comparable scores."""
         chosen = self.chosen
         budgets = chosen.budgets if self.learns else (WITHOUT_PRACTICE,)
         shares = (len(self.tasks), self.budgets, self.seeds, self.seed)
@@ -107,7 +107,7 @@ def benchmark_config(
 
     Args:
         agent: a registered name, or `my.module:Agent`.
-        settings: of the agent, by name; its defaults apply to the others.
+        settings: settings of the agent, by name; its defaults apply to the others.
         protocol_name: name of the protocol.
         tasks: names of its tasks; None for all.
         budgets: numbers of steps of practice; None for those of the protocol. An agent that does

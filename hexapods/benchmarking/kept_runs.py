@@ -1,4 +1,4 @@
-"""Runs that are done of a benchmark: in its score file, or while it is under way beside that."""
+"""Finished runs of a benchmark: in its score file, and beside it while the benchmark runs."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -19,18 +19,18 @@ ENDING = ".runs"
 
 
 class KeptRuns:
-    """Results of runs, in memory and, if there is a file, in it.
+    """Results of finished runs, in memory and, if one is given, in a file.
 
     Attributes:
-        results: by run.
+        results: result of each run.
     """
 
     def __init__(self, path: Path | None = None, file: IO[bytes] | None = None) -> None:
         """Begin without results.
 
         Args:
-            path: of the file.
-            file: to which results are appended; None for none.
+            path: path of the file.
+            file: open file to which results are appended; None for memory alone.
         """
         self.results: dict[BenchmarkRun, BenchmarkResult] = {}
         self._path, self._file = path, file
@@ -50,13 +50,13 @@ class KeptRuns:
 
 @contextmanager
 def kept_runs(score_file: Path | None, config: BenchmarkConfig) -> Iterator[KeptRuns]:
-    """Yield the results that are there of a benchmark, to which others are added.
+    """Yield the results of the finished runs of a benchmark, to which others are added.
 
-    They are those of the score file, if it is of the same agent, and those beside it. Tasks,
-    budgets and seeds may be others: what is there of them counts.
+    They are those of the score file, if it is of the same agent, and those beside it. Its tasks,
+    budgets and seeds may differ from the config: the runs of both count.
 
     Args:
-        score_file: beside which results are kept; None to keep them in memory alone.
+        score_file: path beside which results are kept; None to keep them in memory alone.
         config: the benchmark.
 
     Raises:
@@ -126,6 +126,6 @@ def _read(file: IO[bytes], path: Path, config: BenchmarkConfig, runs: KeptRuns) 
 
 
 def _same_in_all(config: BenchmarkConfig) -> Mapping[str, object]:
-    """Return what all runs of a file have in common; tasks, budgets and seeds may grow."""
+    """Return the fields that all runs of a file share; tasks, budgets and seeds may grow."""
     growing = ("tasks", "budgets", "seeds")
     return {name: value for name, value in to_json(config).items() if name not in growing}

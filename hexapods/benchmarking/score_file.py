@@ -1,4 +1,4 @@
-"""Score files: what was benchmarked and what came of it, as JSON that anyone can repeat."""
+"""Score files: config, results and scores of a benchmark, as JSON that anyone can repeat."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -49,7 +49,7 @@ def score_content(
 
 
 def own_versions() -> dict[str, str]:
-    """Return what results depend on here: versions, platform and the processor's kind."""
+    """Return the versions, platform and kind of processor on which results depend here."""
     platform = str(description()["platform"])
     return {**versions(), "platform": platform, "processor": instructions()}
 
@@ -64,7 +64,7 @@ def decode(data: bytes, name: str) -> dict[str, Any]:
 
     Args:
         data: content of the file.
-        name: of the file, for messages.
+        name: name of the file, for messages.
 
     Raises:
         UnknownName: if this version does not know its protocol.
@@ -154,7 +154,7 @@ def row_of(content: Mapping[str, Any]) -> str:
 
 
 def _protocol_text(content: Mapping[str, Any]) -> str:
-    """Return the protocol, and what is left out or drawn anew of it."""
+    """Return the protocol in words, with the parts that are left out or drawn anew."""
     name = str(content["protocol"])
     parts = []
     if not content["is_whole_protocol"]:

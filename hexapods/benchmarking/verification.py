@@ -1,4 +1,4 @@
-"""Repeat a benchmark from its score file, and tell what differs."""
+"""Repeat a benchmark from its score file, and list the differences."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -32,7 +32,7 @@ class BenchmarkVerification(NamedTuple):
 
     Attributes:
         repeated: number of runs that were repeated.
-        differences: what differs, a sentence each; none if all repeats to the last bit.
+        differences: sentences, one per difference; none if all repeats to the last bit.
         is_rounding: whether nothing differs but last digits.
     """
 
@@ -47,14 +47,14 @@ def verification(
     sample: int | None = None,
     on_run: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
 ) -> BenchmarkVerification:
-    """Repeat the runs of a score file, compute its scores again, and return what differs.
+    """Repeat the runs of a score file, compute its scores again, and return the differences.
 
     Args:
-        content: of the file, as `score_file.decode` returns it.
+        content: content of the file, as `score_file.decode` returns it.
         workers: number of processes; None for one per core.
         sample: number of runs that are repeated, drawn evenly, always the same; None for all. The
             scores are computed again from the distances of the file in any case.
-        on_run: called with how many runs are repeated, and of how many.
+        on_run: called with the number of runs repeated so far, and of all that are to be.
 
     Raises:
         UnknownName, InvalidInput: if the agent is not known here, or the sample is not valid.
@@ -88,7 +88,7 @@ def verification(
 
 
 def version_note(content: Mapping[str, Any]) -> str | None:
-    """Return how versions and platform here differ from the file's; None if results are equal."""
+    """Return a sentence on versions that differ from the file's; None if results must be equal."""
     # Python is in the file, but results do not depend on it, nor on the kernel's version.
     named = ("racing-hexapods", "numpy", "mujoco", "processor")
     versions = {name: str(content["versions"].get(name)) for name in named}
@@ -101,7 +101,7 @@ def version_note(content: Mapping[str, Any]) -> str | None:
 def _score_differences(
     content: Mapping[str, Any], again: Mapping[str, Any]
 ) -> Iterator[tuple[str, bool]]:
-    """Yield what differs in the scores, and whether in last digits only."""
+    """Yield each difference in the scores, in words, and whether it is in last digits only."""
     for name in ("is_whole_protocol", "aggregate", "tasks"):
         for place, before, after in _unequal(name, content.get(name), again[name]):
             is_number = isinstance(before, int | float) and isinstance(after, int | float)

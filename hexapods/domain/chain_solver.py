@@ -57,7 +57,7 @@ class FootParameters(NamedTuple):
 
 
 class _Rows(NamedTuple):
-    """Where the parameters of a chain are in the rows of an array."""
+    """Slices of an array's rows with the parameters of a chain, each flattened."""
 
     to_first: slice
     """Rotation of the body frame to that of the first joint, (3, 3)."""
@@ -71,8 +71,8 @@ class _Rows(NamedTuple):
     length: slice
     """Length of the leg from joint to joint [m]."""
     weights: slice
-    """How much an error along the axes of the body counts, as a matrix of errors in the frame of
-    the first joint, (3, 3)."""
+    """Weights of errors along the axes of the body, as a matrix for errors in the frame of the
+    first joint, (3, 3)."""
     is_flat: slice
     """1 for a foot that moves in a surface only, or 0."""
 
@@ -84,7 +84,7 @@ class ChainSolver:
         max_joints: number of joints of the longest chain; shorter ones are padded with joints
             that do nothing.
         parameters: parameters of each leg for `solve`, (rows, legs).
-        follows_grid: for each leg whether its foot can go to any place near where it is.
+        follows_grid: for each leg whether its foot can go to any place near its present one.
     """
 
     def __init__(self, chains: Sequence[Chain]) -> None:
@@ -198,7 +198,7 @@ class ChainSolver:
         feet: FootParameters,
         is_there: NDArray[np.bool_],
     ) -> NDArray[np.bool_]:
-        """Return which feet have arrived; of those that move in a surface, at their height."""
+        """Return for each foot whether it has arrived; if it moves in a surface, at its height."""
         if not self._is_any_flat:
             return is_there
         error = target - self._vectors(turned, feet.stages)[:, -1]
@@ -215,14 +215,14 @@ class ChainSolver:
         return parameters[self._rows.stages].reshape(3, 4, self.max_joints, *parameters.shape[1:])
 
     def _vectors(self, turned: FloatArray, stages: FloatArray) -> FloatArray:
-        """Return how each joint moves the foot, and where that is, in the first joint's frame.
+        """Return the columns of the foot's Jacobian and its position, in the first joint's frame.
 
         Args:
             turned: angles of the joints, (max_joints, ...).
             stages: (3, 4, max_joints, ...).
 
         Returns:
-            (3, max_joints + 1, ...); the last is the foot.
+            (3, max_joints + 1, ...): a column for each joint; the last is the position of the foot.
         """
         cos, sin, max_joints = np.cos(turned), np.sin(turned), self.max_joints
         # For each joint: from the next joint's frame to its own, then turned about its z axis.

@@ -42,7 +42,7 @@ Key = tuple[Any, ...]
 
 
 class RangesByChoice(NamedTuple):
-    """Limits of a field that depend on what is chosen in another.
+    """Limits of a field that depend on the choice of another field.
 
     Attributes:
         field: the other field.
@@ -83,7 +83,7 @@ class Disturbance:
     part: ClassVar[Key] = ()
     """The part of a leg to which it happens; by default all of it."""
     repairs: ClassVar[bool] = False
-    """Whether it only ends what happened before."""
+    """Whether it only ends earlier disturbances."""
     adjective: ClassVar[str] = ""
     """Adjective of a leg to which it has happened; empty where `kind` is one."""
 
@@ -117,7 +117,7 @@ class Disturbance:
             )
 
     def holds_at(self, step: int) -> bool:
-        """Whether it holds in a step."""
+        """Whether the disturbance holds in a step."""
         return self.at_step <= step and (self.until_step is None or step < self.until_step)
 
     def parts(self) -> "Mapping[Key, Disturbance]":
@@ -125,7 +125,7 @@ class Disturbance:
         return {(self.kind, *(getattr(self, name) for name in self.identified_by)): self}
 
     def check(self, robot: Robot) -> None:
-        """Check that it can happen to this robot.
+        """Check that the disturbance can happen to this robot.
 
         Raises:
             InvalidInput: if the robot has no such leg.
@@ -418,7 +418,7 @@ KINDS: Mapping[str, type[Disturbance]] = {
 
 
 def is_nothing(disturbance: Disturbance, robot: Robot) -> bool:
-    """Whether it only ends an earlier one: a slope of 0°, the friction with which it was built."""
+    """Whether a disturbance only ends an earlier one: a slope of 0°, the robot's own friction."""
     if disturbance.size is None:
         return False
     nothing = (

@@ -209,7 +209,7 @@ _REACH_SAMPLES = 8
 
 @lru_cache(maxsize=64)
 def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
-    """Check that each leg reaches its grid; return how far feet may drift from it.
+    """Check that each leg reaches its grid; return the range of offsets to which feet may drift.
 
     A foot's actual forward offset drifts as the body re-centres. It stays strictly within
     (1 − w) / w · h of home, h half the grid's side, w its group's share of all feet: the offsets of
@@ -250,7 +250,7 @@ class _Passage(NamedTuple):
 
     Attributes:
         grid, cell: the cell, by its number.
-        why: where on the way, for the error message; None for a drift that only long series of
+        why: place on the way, for the error message; None for a drift that only long series of
             odd steps lead to.
         angles: angles of all joints [rad], NaN where a foot is out of reach.
     """
@@ -288,10 +288,10 @@ def _passages(robot: Robot, gait: Gait, grid: FootGrid) -> Iterator[_Passage]:
 
 
 def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
-    """Return how far the feet of each group reach forward and back, wherever they are sideways.
+    """Return the forward and backward reach of each group's feet, at every sideways offset [m].
 
     Raises:
-        Unreachable: if that is less than the grid, or a foot does not reach a place between.
+        Unreachable: if the reach is less than the grid, or a foot does not reach a place between.
     """
     legs, half = legs_of(robot), grid.half_side_m
     kinematics = legs.under(gait)
@@ -329,7 +329,7 @@ def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
 
 
 def _reach_problems(legs: Legs, angles: FloatArray) -> Iterator[tuple[int, str]]:
-    """Iterate over the legs that cannot have these joint angles, (joints,), and why."""
+    """Yield the legs that cannot have these joint angles, (joints,), with the reason."""
     low, high = legs.limits_rad
     is_possible = (low <= angles) & (angles <= high)
     if is_possible.all():

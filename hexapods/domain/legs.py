@@ -21,19 +21,19 @@ class Joint(NamedTuple):
     """A joint of a leg, which one servo turns."""
 
     leg: int
-    """Number of its leg, from 1."""
+    """Number of the leg, from 1."""
     name: str
-    """Its name, and that of the link that it moves; no other joint of the leg has it."""
+    """Name of the joint and of the link that it moves; unique in the leg."""
     limits_rad: tuple[float, float]
 
     @property
     def label(self) -> str:
-        """Its name among the joints of all legs, such as `leg1_coxa`."""
+        """Name of the joint among the joints of all legs, such as `leg1_coxa`."""
         return f"leg{self.leg}_{self.name}"
 
 
 class Legs(ABC):
-    """Legs of one robot: their joints, their masses, and where their feet are.
+    """Legs of one robot: their joints, their masses, and the kinematics of their feet.
 
     Attributes:
         joints: joints of all legs, in the order of poses, servo commands and torques: leg by leg.
@@ -98,7 +98,7 @@ class Legs(ABC):
 
     @abstractmethod
     def links_in_body(self, angles: Sequence[float]) -> list[FloatArray]:
-        """Return where the joints and the foot of each leg are in the body frame, outward.
+        """Return the positions of each leg's joints and foot in the body frame, proximal to distal.
 
         Args:
             angles: angles of all joints in one pose [rad].

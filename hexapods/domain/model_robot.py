@@ -106,7 +106,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
 
     Args:
         model: the model.
-        name: its name.
+        name: name of the robot.
         changes: values of fields in `ModelRobot.changeable`.
 
     Raises:
@@ -207,7 +207,7 @@ def _time_step_s(joints: Sequence[ModelJoint]) -> float:
 
 
 def _mount(chain: Chain) -> LegMount:
-    """Return where a leg is; directions are rounded, so that mirrored legs have mirrored ones."""
+    """Return the mount of a leg; angles are rounded, so that mirrored legs have mirrored angles."""
     x, y, z = chain.anchors_m[0].tolist()
     out_x, out_y = (chain.foot_m - chain.anchors_m[0])[:2].tolist()
     azimuth_deg = round(math.degrees(math.atan2(y, x)), 6)

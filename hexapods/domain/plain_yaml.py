@@ -88,7 +88,7 @@ def root_node(content: bytes, name: str, what: str, loader: type[NodeLoader] = N
 
     Args:
         content: the file.
-        name: its name, for messages.
+        name: name of the file, for messages.
         what: kind of document, for messages, such as `servo map`.
         loader: class that composes the nodes.
 
@@ -114,7 +114,7 @@ def read_plain(content: bytes, name: str, what: str) -> Any:
 
     Args:
         content: the file.
-        name: its name, for messages.
+        name: name of the file, for messages.
         what: kind of document, for messages.
 
     Raises:
@@ -124,7 +124,7 @@ def read_plain(content: bytes, name: str, what: str) -> Any:
 
 
 def nodes_of(value: Any) -> int:
-    """Return how many names and values plain values have, as `MAX_NODES` counts them."""
+    """Return the number of names and values in plain values, as `MAX_NODES` limits it."""
     if isinstance(value, dict):
         return 1 + len(value) + sum(map(nodes_of, value.values()))  # whole numbers
     return 1 + (sum(map(nodes_of, value)) if isinstance(value, list) else 0)  # whole numbers

@@ -119,7 +119,7 @@ class Support:
 
 
 def _turns(groups: Sequence[Group]) -> int:
-    """Return how many neighbours around the body are of different groups."""
+    """Return the number of adjacent pairs of legs around the body that are of different groups."""
     of_leg = [group for _, group in sorted((leg, legs) for legs in groups for leg in legs)]
     return sum(group is not other for group, other in pairwise([*of_leg, of_leg[0]]))
 

@@ -1,4 +1,4 @@
-"""The ground of one lane where it is not flat or not as it was: bumps, patches, a slope."""
+"""The ground of one lane where a disturbance has changed it: bumps, patches, a slope."""
 
 import math
 
@@ -32,11 +32,11 @@ class LaneGround(Temporary):
     """Drawing of a lane's ground while conditions change it; without any of them nothing is drawn.
 
     Args:
-        server: where to draw.
+        server: viser server to draw on.
         root: scene node of the ground.
         x_m: centre of the lane [m].
         width_m: width of the lane, at whose borders ticks stay visible.
-        friction: of the robot, where the ground is as it was.
+        friction: friction of ground that no disturbance has changed.
         is_labelled: whether a slope is labelled here.
     """
 
@@ -55,7 +55,7 @@ class LaneGround(Temporary):
         self._is_labelled = is_labelled
 
     def draw(self, conditions: World, origin: Origin) -> None:
-        """Show what holds, with the lane's frame at `origin` on the ground."""
+        """Draw the changed ground of these conditions, with the lane's frame at `origin`."""
         shown: list[Disturbance] = [d for d in conditions.disturbances if isinstance(d, _KINDS)]
         if not self._begin((origin, *shown) if shown else ()):
             return
@@ -152,7 +152,7 @@ class LaneGround(Temporary):
 
 
 def _on_ground(points: FloatArray, origin: Origin) -> FloatArray:
-    """Return where points of a lane's frame, (..., 2) [m], lie on the ground."""
+    """Transform points, (..., 2) [m], from a lane's frame to the frame of the ground."""
     cos, sin = math.cos(origin.turn_rad), math.sin(origin.turn_rad)
     x, y = points[..., 0], points[..., 1]
     return np.stack([cos * x - sin * y + origin.x_m, sin * x + cos * y + origin.y_m], axis=-1)
@@ -162,10 +162,10 @@ def _between(corners: FloatArray, from_m: float, to_m: float, origin: Origin) ->
     """Return the part of a convex polygon that lies between two distances along the ground's track.
 
     Args:
-        corners: of the polygon, (k, 2) [m].
+        corners: corners of the polygon, (k, 2) [m].
         from_m: the nearer distance [m].
         to_m: the farther distance [m].
-        origin: where the polygon's frame lies on the ground.
+        origin: place and heading of the polygon's frame on the ground.
     """
     for sign, limit in ((1.0, from_m), (-1.0, -to_m)):
         inside = sign * _on_ground(corners, origin)[:, 1] - limit if len(corners) else corners

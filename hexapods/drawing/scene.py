@@ -195,7 +195,7 @@ class _RunScene:
         return moved
 
     def _ghost_name(self, number: int) -> str:
-        """Return what the label of a lane calls the ghost on it."""
+        """Return the name of the ghost on a lane, for the label of the lane."""
         if self.spec.ghosts is None:
             return "original"
         names = [
@@ -228,5 +228,5 @@ class _RunScene:
         return self._ghost_robots.draw(ghosts or [None] * len(self._ghost_xs))
 
     def remove(self) -> None:
-        """Remove it from viser's scene."""
+        """Remove the nodes of the run from viser's scene."""
         self._root.remove()

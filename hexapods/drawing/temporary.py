@@ -4,7 +4,7 @@ import viser
 
 
 class Temporary:
-    """Scene nodes under one frame, which are all drawn anew when what they show changes."""
+    """Scene nodes under one frame, which are all drawn anew when their content changes."""
 
     def __init__(self, server: viser.ViserServer, root: str, x_m: float = 0.0) -> None:
         self._server, self._root, self._x_m = server, root, x_m
@@ -12,7 +12,7 @@ class Temporary:
         self._frame: viser.FrameHandle | None = None
 
     def _begin(self, content: tuple[object, ...]) -> bool:
-        """Remove what was drawn if the content has changed; True if it is to be drawn anew."""
+        """Remove the drawn nodes if the content has changed; True if the caller is to draw it."""
         if content == self._shown:
             return False
         if self._frame is not None:

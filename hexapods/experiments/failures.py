@@ -1,4 +1,4 @@
-"""Trials of an experiment that failed, in words: for Python, the command line and the report."""
+"""Failed trials of an experiment, in words: for Python, the command line and the report."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,12 +16,12 @@ def failed_trials(counts: Mapping[str, Any]) -> Sequence[Mapping[str, str]]:
 
 
 def failures_text(counts: Mapping[str, Any]) -> str:
-    """Say how many trials failed: `2 of 5 trials failed`."""
+    """Return the number of failed trials in words: `2 of 5 trials failed`."""
     return f"{counts['failed']:,} of {counts['total']:,} trials failed"
 
 
 def failures_sentence(counts: Mapping[str, Any]) -> str:
-    """Say how many trials failed, and the first of each reason; empty if none failed."""
+    """Return the number of failed trials, with one trial of each reason, in words; empty if 0."""
     if not counts["failed"]:
         return ""
     first: dict[str, str] = {}

@@ -83,7 +83,7 @@ class LocalWorkers:
         self._pool, self._expected = pool, versions()
 
     def count(self) -> int:
-        """Return how many tasks they compute at once."""
+        """Return the number of worker processes, each of which computes one task at a time."""
         return self._pool.count
 
     def submit(self, trials: Sequence[Trial]) -> "Future[list[Outcome]]":
@@ -94,7 +94,7 @@ class LocalWorkers:
         """Return the result of a task that has ended.
 
         Raises:
-            WorkerDied: if its worker did.
+            WorkerDied: if its worker process ended.
             ClusterLost: if no worker can be started.
         """
         try:

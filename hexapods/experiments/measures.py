@@ -61,7 +61,7 @@ def measure_against_references(strata: Sequence[SettingResults], seed: int) -> d
 def best_known_relative(strata: Sequence[SettingResults]) -> float | None:
     """Return the best known distance as a share of greedy's, the mean over the strata with seeds.
 
-    None if one of them lacks either.
+    None if a stratum lacks one of the two distances.
     """
     shares = []
     for reference in (stratum.reference for stratum in strata if stratum.total_m):
@@ -74,7 +74,7 @@ def best_known_relative(strata: Sequence[SettingResults]) -> float | None:
 def summarise_distances(points: Points, seed: int) -> dict[str, Any] | None:
     """Return the seeds' distances, their mean, median and interquartile mean [m].
 
-    None without seeds.
+    Return None without seeds.
     """
     if not points:
         return None

@@ -1,4 +1,4 @@
-"""Names of experiments, settings and trials in words: all in which the settings differ."""
+"""Names of experiments, settings and trials, made of the parameters that differ."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
@@ -39,7 +39,7 @@ def experiment_name(config: ExperimentConfig) -> str:
 
 
 def _axes_in_words(config: ExperimentConfig) -> str:
-    """Return what an experiment varies in words; empty where its title says it."""
+    """Return the varied axes of an experiment in words; empty where its title names them."""
     if config.preset.takes_settings:
         agents = [_agents(config)] if len(config.agents) > 1 else []
         return " × ".join([*agents, *_swept(config)]) or title_of(config.agents[0])
@@ -57,7 +57,7 @@ def _agents(config: ExperimentConfig) -> str:
 
 
 def _some(titles: Sequence[str], noun: str) -> str:
-    """Return a few titles, or how many there are."""
+    """Return titles in words, or their number if there are many."""
     return ", ".join(titles) if len(titles) <= _MAX_TITLES else f"{len(titles)} {noun}"
 
 
@@ -91,7 +91,7 @@ def setting_names(
     Args:
         settings: entries of a summary's settings.
         parameters: the summary's names of what may vary except place and agent.
-        models: models that searches plan with, by the key of their setting; told if they differ.
+        models: models that searches plan with, by the key of their setting; named if they differ.
     """
     differing = models if len(set(models.values()) - {None}) > 1 else {}
     varied = _varied(settings, (*parameters, *_PLACE))
@@ -132,7 +132,7 @@ def _name(setting: Mapping[str, Any], fields: Iterable[str], model: PlanningMode
 
 
 def _value_name(setting: Mapping[str, Any], name: str) -> str:
-    """Return a value in words; empty where there is nothing to tell."""
+    """Return a value in words; empty for a value that is not named."""
     value = setting[name]
     if value is None or (name, value) in (("world", "flat"), ("steps", 0)):
         return ""

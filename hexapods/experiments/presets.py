@@ -23,21 +23,21 @@ GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
 
 @dataclass(frozen=True, kw_only=True)
 class Preset:
-    """One experiment as data; what it does not take stays at its defaults.
+    """One experiment as data; fields that a preset does not take stay at their defaults.
 
     Attributes:
-        name: what users type and files say.
-        title: on the page and in names of runs.
-        heading: of its report; by default its title.
-        description: what is tried, for people who choose.
-        about: the same in a few words; by default its description.
+        name: name that users type and files contain.
+        title: title on the page and in names of runs.
+        heading: heading of its report; by default the title.
+        description: description of its trials, for people who choose a preset.
+        about: description in a few words; by default `description`.
         fields: fields of `ExperimentConfig` that users may set: axes, agents, seeds and others.
         defaults: values of its fields other than those of `ExperimentConfig`.
-        ideal_defaults: those that differ in the kinematic simulator, which knows no tolerance and
+        ideal_defaults: defaults that differ in the kinematic simulator, which has no tolerance and
             few worlds.
-        takes_settings: whether the settings of its agents are axes, too; it is then named by what
-            it varies.
-        measure: when learners are evaluated.
+        takes_settings: whether the settings of its agents are axes, too; the experiment is then
+            named by its varied axes.
+        measure: moments at which learners are evaluated.
         references: look-ahead agents that are always tried, in addition to its agents.
         reached_share: share of a reference's distance to which steps of practice are counted.
         is_timed: whether a race alone on the machine measures decision times in each scenario.
@@ -73,7 +73,7 @@ class Preset:
 
     @property
     def has_worlds(self) -> bool:
-        """Whether it compares curves in worlds, in which all agents of a seed walk one robot."""
+        """Whether the preset compares curves in worlds; all agents of a seed walk one robot."""
         return self.measure in ("practice", "recovery")
 
     @property
@@ -88,7 +88,7 @@ class Preset:
 
     @property
     def is_for_learners(self) -> bool:
-        """Whether it compares learners only: an agent that does not learn does not recover."""
+        """Whether the preset compares learners only: other agents do not recover."""
         return self.measure == "recovery"
 
 

@@ -79,7 +79,7 @@ class Progress:
         )
 
     def cost(self, workers: int | None) -> Mapping[str, Any]:
-        """Return what the trials cost, as the summary reports it.
+        """Return the trials' wall time, compute time and rate, and the workers, for the summary.
 
         Args:
             workers: number of worker processes; None if unknown.

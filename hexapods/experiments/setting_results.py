@@ -29,7 +29,7 @@ class ReferenceDistance(NamedTuple):
 
 
 class SettingResults(NamedTuple):
-    """A setting, its results so far, by seed number, and what they are compared with."""
+    """A setting, its results so far by seed number, and the reference distances."""
 
     setting: TrialSetting
     results: Mapping[int, TrialResult]
@@ -64,7 +64,7 @@ class SettingResults(NamedTuple):
 
     @property
     def best_known_m(self) -> float | None:
-        """The best known distance in the world as it is in the end [m]; None if not computed."""
+        """The best known distance in the world after the practice [m]; None if not computed."""
         training = self.setting.training
         return best_known_m(training, training.world.as_of(training.steps))
 
@@ -87,7 +87,7 @@ def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[Set
 
     Args:
         plan: the experiment's settings.
-        results: by trial key, `<setting key>#<seed number>`.
+        results: results of trials by trial key, `<setting key>#<seed number>`.
     """
     by_setting: dict[str, dict[int, TrialResult]] = {setting.key: {} for setting in plan.settings}
     for key, result in results.items():

@@ -40,7 +40,7 @@ class Interval(NamedTuple):
     high: float | None = None
 
     def as_json(self, name: str, unit: str = "") -> dict[str, Any]:
-        """Return it as an entry of a summary; `unit` is a suffix of all names, such as `_m`."""
+        """Return the interval as an entry of a summary; `unit`, such as `_m`, ends all names."""
         return {f"{name}{unit}": self.value, f"low{unit}": self.low, f"high{unit}": self.high}
 
     @classmethod
@@ -267,7 +267,7 @@ def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verd
 
     Args:
         estimate: the bootstrap interval.
-        threshold: to compare with.
+        threshold: threshold to compare with.
         fewest: number of seeds in the smallest stratum; below `MIN_RESAMPLED` nothing is decided.
     """
     return estimate.exceeds(threshold) if fewest >= MIN_RESAMPLED else "not established"

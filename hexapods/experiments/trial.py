@@ -37,10 +37,10 @@ class TrialConfig:
         evaluations: steps of practice after which the learner walks 50 steps from rest, ascending;
             with any there is no race.
         earning_steps: number of steps after each evaluation whose rewards are added up; 0 for none.
-        plans_with: what a searcher knows, as in `LaneConfig`.
+        plans_with: model that a search plans with, as in `LaneConfig`.
         keep_learning: whether the agent learns from each step of the race too.
-        most_transitions: that a search may simulate in the race; over it, it fails. None for any
-            number.
+        most_transitions: most transitions that a search may simulate in the race; with more, the
+            trial fails. None for any number.
     """
 
     __repr__ = short_repr
@@ -56,7 +56,7 @@ class TrialConfig:
 
     @property
     def must_be_alone(self) -> bool:
-        """Whether it measures wall-clock time, so that no other trial may run concurrently."""
+        """Whether the trial measures wall-clock time, so that no other may run concurrently."""
         return bool(self.rivals)
 
 
@@ -71,8 +71,8 @@ class TrialResult:
             has taken its 50 steps; None without a race.
         elapsed_s: duration of the 50 steps under the paper clock; None without a race.
         transitions: number of transitions simulated to decide on the 50 steps.
-        wall: with rivals, for each lane `agent`, `decision_s`, and under the wall clock
-            `finished_distance_m`, `elapsed_s` and `rank`.
+        wall: times measured with rivals: for each lane `agent`, `decision_s`, and under the wall
+            clock `finished_distance_m`, `elapsed_s` and `rank`.
         failure: reason if there are no distances, one sentence.
         earned_m: rewards of the practice that follows each evaluation, added up over
             `TrialConfig.earning_steps` [m].
@@ -123,8 +123,8 @@ def run_trial(
     Args:
         config: the trial.
         timer: clock in seconds that measures decisions.
-        table: what the agent has learned before; with 0 blocks it races with that. No evaluations
-            are made with it.
+        table: checkpoint of the agent from an earlier practice; with 0 blocks it races with that.
+            No evaluations are made with it.
 
     Raises:
         HexapodError: if the config is invalid: an unknown agent, an unreachable grid.
@@ -161,7 +161,7 @@ def _practise(
 
 
 def _practise_and_evaluate(config: TrialConfig) -> TrialResult:
-    """Practise once, and evaluate what was learned on the way."""
+    """Practise once, and evaluate the learned policy at the trial's evaluation steps."""
     learner = build_learner(config.training)
     rewards: list[float] = []
     distances: list[float] = []

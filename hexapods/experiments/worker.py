@@ -36,7 +36,7 @@ class Outcome(NamedTuple):
 
     key: str
     result: TrialResult | None
-    """None if it was set aside."""
+    """Result of the trial; None if it was set aside."""
     set_aside: str | None
     """The reason that there is no result, in a sentence."""
     compute_s: float
@@ -69,7 +69,7 @@ class Workers(Protocol):
     """Processes that run trials: of this machine, or of a Dask cluster."""
 
     def count(self) -> int:
-        """Return how many tasks they compute at once; raises ClusterLost if they are lost."""
+        """Return the number of tasks computed concurrently; raises ClusterLost without workers."""
 
     def submit(self, trials: Sequence[Trial]) -> BatchFuture:
         """Let a worker run a batch of trials."""
@@ -78,7 +78,7 @@ class Workers(Protocol):
         """Return the result of a task that has ended.
 
         Raises:
-            WorkerDied: if its worker did.
+            WorkerDied: if its worker process ended.
             ClusterLost: if the workers are lost.
             VersionMismatch: see `run_batch`.
             Exception: if the task could not be decoded.
@@ -131,7 +131,7 @@ def versions() -> dict[str, str]:
 
 
 def difference(versions_here: Mapping[str, str], versions_there: Mapping[str, str]) -> str | None:
-    """Describe how the versions of two processes differ; None if results are comparable.
+    """Return the differences of two processes' versions in words; None if results are comparable.
 
     Python's patch version is ignored.
     """

@@ -13,7 +13,7 @@ from hexapods.experiments.statistics import Points, iqm_interval, share_at_least
 from hexapods.runs.lane import LaneConfig, PlanningModel, plans_with
 
 MIN_REFERENCE_M = 0.01
-"""A reference that walks less has nothing that one could have a share of."""
+"""A reference that walks less is too short for shares of its distance."""
 Curves = Sequence[Points]
 """For each evaluation the distance of every seed [m]."""
 
@@ -32,8 +32,8 @@ def compare_in_worlds(
         Plain types, fit for JSON. Of each agent its distance after the last evaluation, its share
         of greedy's (`of_greedy`) and of the best known (`of_best_known`); of a learner also its
         `curve`, the area under it as mean distance over the practice (`mean_m`), the steps until it
-        walks as far as a reference (`until_greedy`, `until_best_known`), and in a recovery what the
-        following steps earned (`earned`). Distances of references are interquartile means.
+        walks as far as a reference (`until_greedy`, `until_best_known`), and in a recovery the
+        rewards of the following steps (`earned`). Distances of references are interquartile means.
     """
     references: dict[Any, dict[str, Any]] = {}
     for results in settings:
@@ -93,7 +93,7 @@ _NO_PRACTICE: Mapping[str, Any] = {
 def _practice(
     results: SettingResults, greedy_m: float | None, best_m: float | None, seed: int, share: float
 ) -> dict[str, Any]:
-    """Return what is measured along the practice of a learner."""
+    """Return curve, mean distance, steps until the references and earned rewards of a learner."""
     trial, walks = results.setting.trial, results.succeeded
     is_recovery = trial.earning_steps > 0
     begin = trial.evaluations[0] if is_recovery else 0

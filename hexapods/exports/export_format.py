@@ -36,12 +36,12 @@ class EncodedReplay(NamedTuple):
 
 @dataclass(frozen=True)
 class ExportSource:
-    """A run that has ended, as exports read it.
+    """A run that has ended, from which exports are made.
 
     Attributes:
-        title: of the run.
-        walks: returns its recorded walks. Called again for each chunk of a long file.
-        replay: returns its frames, of a race as timed by a clock.
+        title: title of the run.
+        walks: returns the recorded walks of the run. Called again for each chunk of a long file.
+        replay: returns the frames of the run, of a race as timed by a clock.
     """
 
     title: str
@@ -76,10 +76,10 @@ class FileType:
     """A type of file that a format has.
 
     Attributes:
-        ending: of its name, without the point; the value of `format` in a request.
+        ending: ending of the file's name, without the point; the value of `format` in a request.
         title: label of its download.
-        media_type: of an answer with the file.
-        extra: of `[project.optional-dependencies]`, if it needs one.
+        media_type: media type of an answer with the file.
+        extra: name in `[project.optional-dependencies]`, if it needs one.
     """
 
     ending: str
@@ -107,13 +107,13 @@ class ExportFormat:
     """An export format, as the registry declares it.
 
     Attributes:
-        title: what the files are, to follow "Export".
+        title: name of the files, to follow "Export".
         files: the types of file, the default first.
         write: writes a file.
-        note: more about it, for the description of its route.
-        options: their declaration.
+        note: further sentences for the description of its route.
+        options: declaration of its options.
         flags: shorter names of options on the command line.
-        load: what it costs a server.
+        load: cost of an export for a server.
         max_served_frames: see `Execution.max_frames`, over REST.
     """
 
@@ -137,7 +137,7 @@ class ExportFormat:
         return "POST" if self.load == "render" else "GET"
 
     def address(self, name: str, file: FileType) -> str:
-        """Return where a type of file is, below the address of a run; `name` is the format's."""
+        """Return the address of a type of file below that of a run; `name` is the format's."""
         return name if len(self.files) == 1 else f"{name}?format={file.ending}"
 
     @property

@@ -65,12 +65,12 @@ class RecordedWalks:
 
     @classmethod
     def of_race(cls, config: RaceConfig, lanes: Iterable[LaneRecording]) -> Self:
-        """Return what is recorded of a race."""
+        """Return the recorded walks of the lanes of a race."""
         return cls(config, [ExportedLane(lane.rest_qpos, lane.steps, lane.agent) for lane in lanes])
 
     @classmethod
     def of_training(cls, config: TrainingConfig, recording: PracticeRecording) -> Self:
-        """Return what is recorded of a practice."""
+        """Return the recorded walk of a training, of the steps that have a motion."""
         steps = [step for step in recording.steps if step.motion is not None]
         return cls(config, [ExportedLane(recording.rest_qpos, steps, config.agent)])
 

@@ -25,7 +25,7 @@ MAX_SEGMENTS = 1000
 and takes as long to encode as one that walks."""
 Segment = Callable[[int, int], bytes]
 _SAMPLED = 8
-"""Segments by which it is told that a level is far too large."""
+"""Number of segments from whose size it is decided that a level is far too large."""
 _PLAYER = "js/offline/player.js"
 _STYLE = "style/offline.css"
 _IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
@@ -43,10 +43,10 @@ def replay_page(
     """Yield the page of a run that has ended, in chunks of at most a segment.
 
     Args:
-        plan: of its replay.
+        plan: plan of the replay.
         scene: returns the encoding of the scene at the start of the run.
         segment: returns the encoding of a segment, by its level and number.
-        title: of the page.
+        title: title of the page.
         max_bytes: maximum size of the page.
 
     Raises:
@@ -76,7 +76,7 @@ def _block(name: str, data: bytes) -> bytes:
 
 
 def _segments_that_fit(segment: Segment, plan: ReplayView, room: int) -> tuple[int, list[int]]:
-    """Return the lowest level from 0 on whose segments fit, and their numbers."""
+    """Return the lowest level from 0 on whose segments fit into `room` bytes, and their numbers."""
 
     def size_of(level: int, number: int) -> int:
         encoded = 4 * -(-len(segment(level, number)) // 3)
@@ -115,7 +115,7 @@ def _recorded_segments(plan: ReplayView, level: int) -> list[int]:
 
 
 def _notes(plan: ReplayView, level: int) -> list[str]:
-    """Return what the page leaves out, in sentences."""
+    """Return sentences on the frames and steps that the page leaves out."""
     notes = []
     if level > 0:
         rate = 1 / (plan.frame_s * 2**level)

@@ -1,7 +1,7 @@
 """A recorded walk as pulses of a robot's servos, and whether the servos can follow it.
 
 The angles are the recorded ones, at which the joints were, and not those that the simulated servos
-were told. Time is robot time: the motion of all steps, without the time that decisions take.
+were commanded. Time is robot time: the motion of all steps, without the time that decisions take.
 """
 
 import math
@@ -28,9 +28,9 @@ class ServoSpeed(NamedTuple):
 
     servo: Servo
     needed_deg_s: float
-    """Its largest speed, as it was recorded [°/s]."""
+    """Largest speed of the servo, as it was recorded [°/s]."""
     at_s: float
-    """When, in robot time [s]."""
+    """Robot time of the largest speed [s]."""
     usable_deg_s: float | None
     """The share of its no-load speed that can be counted on [°/s]; None if it is not known."""
 
@@ -49,10 +49,10 @@ class ServoWalk:
         lane: number of the lane, from 0.
         agent: name of its agent.
         steps: the first and the last step.
-        angles_rad: of the joints, in the order of poses, (frames, joints).
-        pulses_us: for them, (frames, joints).
-        speeds: of each servo, as it was recorded.
-        slowed: how many times as long as recorded it takes.
+        angles_rad: angles of the joints, in the order of poses, (frames, joints).
+        pulses_us: pulse widths of the servos [µs], (frames, joints).
+        speeds: highest speed of each servo, as it was recorded.
+        slowed: factor by which its duration is longer than recorded.
     """
 
     map: ServoMap
@@ -77,12 +77,12 @@ class ServoWalk:
 
     @property
     def slow_enough(self) -> float:
-        """Least factor by which it must be slowed so that all servos follow; from 1 on."""
+        """Least factor by which the walk must be slowed so that all servos follow; at least 1."""
         return times_slower(self.speeds)
 
 
 def times_slower(speeds: Sequence[ServoSpeed]) -> float:
-    """Return how many times as long a walk must take, rounded up to a hundredth; from 1 on."""
+    """Return the least factor by which a walk must be slowed, rounded up to 0.01; at least 1."""
     most = max(speed.times_slower for speed in speeds)
     return max(1.0, math.ceil(100 * most) / 100)
 
@@ -96,7 +96,7 @@ def servo_walk(
 
     Args:
         walks: the recording.
-        servo_map: of the robot's servos.
+        servo_map: map of the robot's servos.
         lane: number of the lane, from 0.
         slow_down: scale time as much as the servos need to follow.
 

@@ -40,8 +40,8 @@ class ShownPoses:
 
     Attributes:
         problem: the walking problem, with the robot.
-        agents: of the lanes.
-        times_s: moment of the run [s].
+        agents: names of the agents of the lanes.
+        times_s: race or practice time of each picture [s].
         poses: (pictures, lanes, 7 + joints): position [m], quaternion, angles [rad].
     """
 
@@ -54,10 +54,10 @@ class ShownPoses:
 def shown_poses(
     walks: RecordedWalks, options: VideoOptions, max_frames: int = MAX_FRAMES
 ) -> ShownPoses:
-    """Return what the pictures of a run's video show.
+    """Return the times and poses that the pictures of a run's video show.
 
     Raises:
-        InvalidInput: if there would be more of them than `max_frames`.
+        InvalidInput: if there would be more pictures than `max_frames`.
     """
     tracks = [_Track(lane, walks.problem.robot.step_s, options.clock) for lane in walks.lanes]
     times_s = _times_s(tracks, options, max_frames)
@@ -146,7 +146,7 @@ def _coding(fps: int, ending: str) -> dict[str, Any]:
 
 
 def _times_s(tracks: Sequence["_Track"], options: VideoOptions, max_frames: int) -> list[float]:
-    """Return the moment of the run that each picture shows; gaps in a practice are left out."""
+    """Return the race or practice time of each picture [s]; gaps in a practice are left out."""
     end_s = max(track.end_s for track in tracks)
     first, speed = tracks[0], options.playback_speed or _fitting_speed(tracks, options, max_frames)
     shift_s, times_s = 0.0, list[float]()

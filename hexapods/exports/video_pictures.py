@@ -70,7 +70,7 @@ class RobotCamera:
         return picture
 
     def close(self) -> None:
-        """Free what OpenGL holds."""
+        """Free the OpenGL context and the resources of MuJoCo in it."""
         self._context.make_current()
         del self._paint  # with it what MuJoCo keeps in the context
         self._context.free()

@@ -1,4 +1,4 @@
-"""Records what is drawn on a viser server, message by message, without sending it."""
+"""Records the messages by which a viser server draws, without sending them."""
 
 import contextlib
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ class _Recorder(StateSerializer):
     """Takes the place of a serializer of a whole file, but can be emptied again and again."""
 
     def take(self) -> Recorded:
-        """Return what was recorded since the last call."""
+        """Return the messages recorded since the last call, and clear the record."""
         with self._handler._record_lock:
             taken = Recorded([message for _, message in self._messages], self._binary_buffers)
             self._messages, self._binary_buffers = [], []
@@ -30,7 +30,7 @@ class _Recorder(StateSerializer):
 
 @contextlib.contextmanager
 def recorder(server: viser.ViserServer) -> Iterator[Any]:
-    """Record within a `with` block; `take()` of what it yields returns what was drawn since.
+    """Record within a `with` block; `take()` of the yielded recorder returns the new messages.
 
     The first `take()` returns the whole scene. Messages of `BLOCKED_TYPES` and those that are no
     part of the scene are left out.

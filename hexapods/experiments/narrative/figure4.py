@@ -34,7 +34,7 @@ def describe_seed_spread(cases: Sequence[Case]) -> str | None:
 
 
 def _falls(curve: Curve) -> tuple[int, int]:
-    """Count how often a seed's distance falls from one block to the next, and all such pairs."""
+    """Count the decreases of seeds' distances from one block to the next, and all such pairs."""
     pairs = [
         (before, after)
         for blocks in zip(curve["points_m"], curve["points_m"][1:], strict=False)

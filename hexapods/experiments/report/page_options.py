@@ -61,7 +61,7 @@ def page_options(summary: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def result_options(preset: Preset) -> dict[str, Any]:
-    """Return what the components need of an experiment to show its result."""
+    """Return the properties of a preset with which the components show its result."""
     return {
         "title": preset.title,
         "measure": preset.measure,
