@@ -77,16 +77,16 @@ def train(
     evaluate_every: int = NOT_GIVEN,
     **settings: Any,
 ) -> Training:
-    """Train an agent to walk (paper, Algorithm 1), and evaluate what it learned.
+    """Train an agent to walk (paper, Algorithm 1), and evaluate the learned policy.
 
     Args:
         agent: its registered name, such as `q-learning`, `my.module:Agent`, or its class; by
             default that of `table`, or Q-learning.
-        table: what it begins with; then its generator goes on where the table's ended. Gait, robot,
-            simulator, grid and observation are those of its practice unless they are given, and the
-            settings the agent's defaults.
-        changes: while it practises: mappings with the number of steps after which they happen,
-            `step`, and values of the agent's live `settings` by name, or a `disturbance`.
+        table: training to begin with, or its file; its generator goes on where that ended. Gait,
+            robot, simulator, grid and observation are those of its practice unless they are given,
+            and the settings the agent's defaults.
+        changes: changes during the practice: mappings with the number of steps after which they
+            happen, `step`, and values of the agent's live `settings` by name, or a `disturbance`.
         on_record: called with each record of the loop.
         checkpoint: path of a file that keeps the state between two steps if the training is
             interrupted by Ctrl-C, or `on_record` raises: `resume` goes on from there, exactly. A
@@ -102,7 +102,7 @@ def train(
         reward: displacement that a step's reward is: `forward` (default), along the robot's own
             heading, or `track`, along the track.
         steps: number of steps of practice, 500.
-        seed: of all random generators, 0.
+        seed: seed of all random generators, 0.
         observation: how the state is read: `measured` (default), `commanded` or `planned`.
         steps_per_episode: number of steps for which ε is constant, 50.
         evaluate_every: steps between two evaluations, 50; 0 for none.
@@ -160,8 +160,8 @@ def _begun(
 
     Args:
         agent: as in `train`, and so is all but the following.
-        table: what it begins with.
-        changes: while it practises.
+        table: training to begin with, or its file.
+        changes: changes during the practice.
         fields_and_settings: fields of the config, and the agent's settings.
         record: see `iter_train`.
     """
@@ -233,7 +233,7 @@ def iter_train(
     as in `train`.
 
     Returns:
-        an iterator over the records, whose `training` is what was learned.
+        an iterator over the records, whose `training` is the result.
 
     Raises:
         UnknownName, InvalidInput, TableMismatch: at the call, as `train`.
@@ -261,29 +261,29 @@ def evaluate(
     evaluate_every: int = NOT_GIVEN,
     **settings: Any,
 ) -> float:
-    """Return how far an agent walks in 50 steps from rest, without exploring or learning [m].
+    """Return an agent's distance in 50 steps from rest, without exploring or learning [m].
 
     Like the evaluations of a training it walks in the world as it is after the practice, which does
     not change meanwhile.
 
     Args:
         agent: a training, or an agent's name or class.
-        table: what the agent has learned, unless `agent` is a training.
+        table: training of the agent, or its file, unless `agent` is a training.
         gait: as in `train`, and so are all below; what is not given is as in the
             training.
         robot: geometry and actuators.
         simulator: `mujoco` or `kinematic`.
         divisions: points along each side of the foot grid.
         grid_side_m: side of the foot grid [m].
-        world: what happens to the robot and the ground; by default undisturbed.
+        world: disturbances of the robot and the ground; by default undisturbed.
         tolerance: how far the robot that the seed draws differs from its design, as a share.
         reward: displacement that a step's reward is.
         steps: number of steps of the practice.
-        seed: of all random generators.
+        seed: seed of all random generators.
         observation: how the state is read.
         steps_per_episode: number of steps for which ε is constant.
         evaluate_every: steps between two evaluations.
-        settings: of the agent.
+        settings: settings of the agent.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
@@ -310,7 +310,7 @@ class Practice(Iterator[TrainingRecord]):
     """A training that is under way, as `iter_train` returns it: an iterator over its records.
 
     Attributes:
-        config: all that decides its result.
+        config: config of the training, which decides its result.
     """
 
     def __init__(
@@ -324,12 +324,12 @@ class Practice(Iterator[TrainingRecord]):
         """Build the learner.
 
         Args:
-            config: of the training.
-            table: what it begins with.
-            changes: while it practises.
+            config: config of the training.
+            table: checkpoint to begin with.
+            changes: changes during the practice.
             record: see `iter_train`.
-            interrupted: the training with which it goes on, as that was; then changes are those
-                that are still to be made.
+            interrupted: state of an interrupted training to continue; then `changes` are those that
+                are still to be made.
         """
         self.config = config
         self._changes = read_changes(changes, config)
@@ -355,7 +355,7 @@ class Practice(Iterator[TrainingRecord]):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """All of its state between two records, from which it goes on exactly."""
+        """Complete state of the practice between two records, from which it is resumed exactly."""
         lists = {
             "curve": [list(point) for point in self._curve],
             "changes": self._made,
@@ -368,8 +368,8 @@ class Practice(Iterator[TrainingRecord]):
     def training(self) -> Training:
         """The training so far; at the end it is the one that `train` returns.
 
-        Before the end its reference distance is known only if it was measured already. If what was
-        learned cannot be evaluated, a warning says so, and the result is None.
+        Before the end its reference distance is known only if it was measured already. If the
+        learned policy cannot be evaluated, a warning says so, and the result is None.
         """
         learner, config = self._learner, self.config
         is_done = learner.step == config.steps

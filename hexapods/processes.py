@@ -1,4 +1,4 @@
-"""Processes that compute for this one: how each starts, is set up, watched and killed.
+"""Processes that compute for this one: start, set-up, supervision and kill of each.
 
 On Linux they are forks of one process, the fork server of `multiprocessing`, which has imported
 what they need: a fork starts in some hundredths of the time, and shares that memory. Elsewhere,
@@ -49,8 +49,8 @@ class SetUp:
     """Actions of a process before anything else.
 
     Attributes:
-        name: shown by `top` and `ps -o comm`.
-        niceness: added to the nice value.
+        name: name that `top` and `ps -o comm` show.
+        niceness: increment of the nice value.
         leads_group: whether it leads a group of its own, so that it can be killed with the
             processes that it starts. One that does not is stopped and continued by the terminal.
         imports_main: whether it imports the program that starts it, as it needs classes of that.
@@ -99,7 +99,7 @@ class Child:
 
         Args:
             target: function of a module, called in the process with its end of the pipe.
-            set_up: done in the process before.
+            set_up: set-up of the process, done before the call.
         """
         self._target, self._set_up = target, set_up
         self.is_killed = False
@@ -162,7 +162,7 @@ class Child:
                 self._process.kill()  # it may have no group yet
 
     def end(self) -> int | None:
-        """Wait for its exit, a moment unless it was killed; then kill it, and all of its group.
+        """Wait `_END_S` for the exit of the process, then kill it and the rest of its group.
 
         Returns:
             its exit code: negative after a signal, `LOST` if the fork server ended; None if it was
@@ -180,9 +180,10 @@ class Child:
         return code
 
     def _has_started(self) -> bool:
-        """Start it; False if the fork server has ended, and the next attempt may start a new one.
+        """Start the process; False if the fork server has ended, and a retry may start a new one.
 
-        That does, as soon as the end can be seen by the id of the process, not only by its socket.
+        A retry does so once the fork server's exit can be seen by its process id, not only by its
+        socket.
         """
         context = process_context()
         self.pipe, other_end = context.Pipe()
@@ -286,7 +287,7 @@ def die_with_parent() -> None:
 
 
 def _end_with_parent(temporary: str | None) -> None:
-    """End this process when the one that started it does, however that ends.
+    """End this process when its parent process ends, however that ends.
 
     Args:
         temporary: folder that is deleted then; None for none.

@@ -68,9 +68,9 @@ class Race:
     """A finished race, as `race` and `load` return it.
 
     Attributes:
-        config: all that decides its result.
+        config: config of the race, which decides its result.
         recording: the steps of each lane.
-        result: what each lane reached, as in answers of the dashboard.
+        result: distances and ranks of the lanes, as in answers of the dashboard.
     """
 
     config: RaceConfig
@@ -121,7 +121,7 @@ class Race:
         return tuple(sorted(rows, key=lambda row: (row.rank or len(rows), row.lane)))
 
     def table(self, clock: Clock = "paper") -> ResultTable:
-        """Return the lanes by rank under a clock, a row each, with all that was raced.
+        """Return the lanes by rank under a clock, a row each, with config and results.
 
         `pandas.DataFrame(race.table())` is a data frame, and so is one of polars. A lane that
         failed has its `failure` as the reason.
@@ -144,7 +144,7 @@ class Race:
 
     @property
     def failed(self) -> Mapping[int, str]:
-        """Why each lane failed that did not take all its steps, by its number from 0 on."""
+        """Reasons of the lanes that failed before their last step, by number from 0."""
         lanes = enumerate(self.result.lanes)
         return {number: lane.failure for number, lane in lanes if lane.failure is not None}
 
@@ -184,7 +184,7 @@ class Race:
         return f"<Race over {self.config.steps:,} steps: {ranking}>"
 
     def _failure(self, standing: Standing) -> str:
-        """Say that a lane failed, and why; "" if it did not."""
+        """Return the failure of a lane in words; "" if it did not fail."""
         reason = self.failed.get(standing.lane)
         return "" if reason is None else f"failed: {reason}"
 
@@ -221,8 +221,8 @@ def lane(
     Args:
         agent: a training, an agent's name or class, or what `policy` returns, which takes no
             argument but `observation`.
-        table: what the agent has learned, unless `agent` is a training.
-        observation: how it reads its state; with a table as in the practice, else `measured`.
+        table: training of the agent, or its file, unless `agent` is a training.
+        observation: observation mode; with a table that of its practice, else `measured`.
         keep_learning: whether it learns from each step of the race; None for its default.
         plans_with: model that a search plans with; see `LaneConfig`.
         settings: further fields of `LaneConfig`, and the agent's settings; none of these with a
@@ -325,14 +325,14 @@ def race(
 
 
 def load(path: str | os.PathLike[str]) -> Training | Race:
-    """Return what `Training.save` or `Race.save`, the dashboard or the command line has saved.
+    """Load a training or a race that `save`, the dashboard or the command line has saved.
 
     Args:
-        path: of an `.npz` file.
+        path: path of an `.npz` file.
 
     Raises:
         InvalidInput: if the file cannot be read.
-        DamagedFile: if it is neither, or was changed since it was written.
+        DamagedFile: if it holds neither, or was changed since it was written.
     """
     file = path_of(path, "a file")
     try:
@@ -350,11 +350,11 @@ def race_from_bytes(data: bytes, name: str) -> Race:
     """Decode the file of a race that `Race.save` has written.
 
     Args:
-        data: its content.
-        name: its name, for error messages.
+        data: content of the file.
+        name: name of the file, for error messages.
 
     Raises:
-        DamagedFile: if it is none.
+        DamagedFile: if the file holds no race.
     """
     try:
         arrays = read_arrays(data)

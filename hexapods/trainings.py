@@ -38,8 +38,8 @@ class Training:
     """A finished training, as `train` and `load` return it.
 
     Attributes:
-        config: all that decides its result.
-        table: what it learned, with its generator: a checkpoint.
+        config: config of the training, which decides its result.
+        table: checkpoint of the learned table, with its generator.
         curve: its evaluations, in order; `pandas.DataFrame(training.curve)` takes them. None are
             known of a file that the dashboard wrote.
         result: distance, references and hash of the Q-table, as in answers of the dashboard; None
@@ -82,7 +82,7 @@ class Training:
         return None if self.result is None else self.result.q_table_sha256
 
     def values(self) -> ResultTable:
-        """Return what its table holds: a row for each state and action, or for each landing.
+        """Return the entries of the table: a row for each state and action, or for each landing.
 
         `pandas.DataFrame(training.values())` is a data frame. `state_0`, `state_1` … are the cells
         of the groups, `action_pair` and `action_cell` the group that moves and where to; of a
@@ -102,7 +102,7 @@ class Training:
         return learner.walker.agent
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what is pickled: an agent holds its simulator, and can be made again."""
+        """Return the state to pickle, without the agent: a simulator is not pickled."""
         return {name: value for name, value in self.__dict__.items() if name != "agent"}
 
     def to_bytes(self) -> bytes:
@@ -145,11 +145,11 @@ class Training:
 def learned_by(
     agent: str | AgentClass | Training, table: Table | None
 ) -> tuple[str, Training | None]:
-    """Return the name of an agent, and what it has learned, if anything.
+    """Return the name of an agent, and its training if there is one.
 
     Args:
         agent: a training, or an agent's name or class.
-        table: what the agent has learned, unless `agent` is a training.
+        table: training of the agent, or its file, unless `agent` is a training.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid, or both are a training.
@@ -194,8 +194,8 @@ def training_from_bytes(data: bytes, name: str) -> Training:
     """Decode the file of a training.
 
     Args:
-        data: its content.
-        name: its name, for error messages.
+        data: content of the file.
+        name: name of the file, for error messages.
 
     Raises:
         DamagedFile: if it is no table, or was changed since it was written.

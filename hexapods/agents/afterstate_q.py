@@ -14,7 +14,7 @@ from hexapods.agents.value_table import ValueTable
 class AfterstateQ(QLearning):
     """The paper's learner with one value a landing, in place of one a state and action.
 
-    What a step earns depends on where the feet stand when it lands, not on how they came there.
+    The reward of a step depends on the cells of the feet after landing, not on those before it.
     So all actions that land alike share a value, and each step teaches something about all of them.
 
     Args:

@@ -63,7 +63,7 @@ def _rotations(cycle: Cycle) -> list[Cycle]:
 
 
 class CycleBandit:
-    """Chooses among policies, each of a cycle or free in its order, by what their steps earn.
+    """Bandit over policies, each of a cycle or of free order, by the rewards of their steps.
 
     Args:
         cycles: cycle of each policy; None where any group may move.

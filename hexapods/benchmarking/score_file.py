@@ -60,7 +60,7 @@ def encode(content: Mapping[str, Any]) -> bytes:
 
 
 def decode(data: bytes, name: str) -> dict[str, Any]:
-    """Decode a score file. Whether it is true is for `verification` to tell.
+    """Decode a score file. `verification` checks whether its results repeat.
 
     Args:
         data: content of the file.

@@ -62,8 +62,8 @@ class Execution:
 
     Attributes:
         max_frames: maximum number of recorded frames, or pictures; None for that of the format.
-        check: raises once nobody needs the file any more; called between the parts of long work.
-        write_file: has a function write a file, possibly in another process.
+        check: raises once the file is no longer needed; called between the parts of long work.
+        write_file: calls a function that writes a file, possibly in another process.
     """
 
     max_frames: int | None = None

@@ -76,7 +76,7 @@ class RecordedWalks:
 
 
 def checked_lane(walks: RecordedWalks, lane: int | None) -> list[int]:
-    """Return the number of the lane that is asked for, or those of all.
+    """Return the numbers of the requested lanes: one, or all.
 
     Raises:
         InvalidInput: if there is no such lane.

@@ -65,7 +65,7 @@ def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes
     """Build the robot from a compiled file.
 
     Raises:
-        InvalidInput: if it is no robot with legs, or a choice is not possible.
+        InvalidInput: if the file is no robot with legs, or a choice is not possible.
     """
     keyframes = _keyframes(compiled.model)
     rest = keyframes[_resting(keyframes)] if keyframes else compiled.model.qpos0
@@ -104,7 +104,10 @@ def _names_of(compiled: Compiled, leg: FoundLeg) -> list[str]:
 
 
 def _places(posed: PosedRobot) -> FloatArray:
-    """Return where legs are around the body: their mounts, or their feet if mounts are on axes."""
+    """Return the places of the legs around the body, (legs, 2) [m]: their mounts, or their feet.
+
+    The feet are taken where two mounts coincide, or one is at the centre.
+    """
     mounts = posed.mounts()[:, :2]
     apart = np.linalg.norm(mounts[:, None] - mounts[None], axis=2)
     is_alone = (apart < _SAME_PLACE_M).sum() == len(mounts)
@@ -237,7 +240,7 @@ class _Builder:
             self._notes.guess(f"{which} have no limits in the file: 90° to each side of home")
 
     def _ends(self) -> dict[int | None, FloatArray]:
-        """Return two points of each link between which it lies, (2, 3)."""
+        """Return the two end points of each link in the body frame, (2, 3) [m], by joint."""
         half = np.array([0, 0, self._span()[2]])
         ends: dict[int | None, FloatArray] = {None: np.array([-half, half])}
         for leg, chain in zip(self._posed.legs, self._chains, strict=True):
@@ -372,7 +375,7 @@ def _with(
 def joint_kinds(names: Sequence[Sequence[str]]) -> Names:
     """Return names of the joints of each leg that tell their kind, the same for all legs.
 
-    Of `FL_hip_joint` and `RR_hip_joint` it is `hip`: the words that all legs have in common.
+    Of `FL_hip_joint` and `RR_hip_joint` the name is `hip`: the words that all legs have in common.
     Where there are none, or two joints would have one name, joints are numbered.
     """
     kinds_of_legs: Names = []

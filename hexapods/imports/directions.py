@@ -37,13 +37,13 @@ def find_forward(
     """Return the direction in which the robot walks, anticlockwise from x of the file [°].
 
     Args:
-        mounts: where the legs are mounted, in the frame of the file, (legs, 2).
-        names: of the joints and bodies of each leg.
-        choices: what a person decided.
-        notes: gets the guess.
+        mounts: places of the legs' mounts in the frame of the file, (legs, 2).
+        names: names of the joints and bodies of each leg.
+        choices: choices of a person.
+        notes: collects the guess.
 
     Raises:
-        InvalidInput: if the chosen direction is none.
+        InvalidInput: if the chosen direction is not valid.
     """
     if choices.forward is not None:
         return _chosen(choices.forward)
@@ -72,7 +72,7 @@ def _contradict(
     left: FloatArray | None,
     right: FloatArray | None,
 ) -> bool:
-    """Whether the left legs are on the right of who looks from the hind legs to those in front."""
+    """Whether the left legs are on the right, seen in the direction from hind to front legs."""
     if front is None or hind is None or left is None or right is None:
         return False
     ahead, across = front - hind, left - right
@@ -111,7 +111,7 @@ def _has(names: Sequence[str], word: str) -> bool:
 
 
 def _asymmetry(mounts: FloatArray, mirrored: int) -> float:
-    """Return how far mounts are from their mirror images [m], with one coordinate mirrored."""
+    """Return the sum of the mounts' distances to the nearest mount mirrored in a coordinate [m]."""
     centred = mounts - (mounts.min(axis=0) + mounts.max(axis=0)) / 2
     image = centred.copy()
     image[:, mirrored] *= -1
@@ -127,7 +127,7 @@ def numbered(places: FloatArray) -> list[int]:
     """Return indices of legs anticlockwise from the front right one.
 
     Args:
-        places: of the legs in the body frame, x right and y forward, (legs, 2).
+        places: places of the legs in the body frame, x right and y forward, (legs, 2).
     """
     azimuths = np.degrees(np.arctan2(places[:, 1], places[:, 0]))
     right = [leg for leg, azimuth in enumerate(azimuths) if abs(azimuth) < _AHEAD_DEG - 1e-6]
@@ -137,12 +137,12 @@ def numbered(places: FloatArray) -> list[int]:
 
 
 def find_gait(places: FloatArray, choices: Choices, notes: Notes) -> str | GaitSpec:
-    """Return which legs move together.
+    """Return the gait: the groups of legs that move together.
 
     Args:
-        places: of the mounts in the body frame, in the order of the legs, (legs, 2).
-        choices: what a person decided.
-        notes: gets the guess.
+        places: places of the mounts in the body frame, in the order of the legs, (legs, 2).
+        choices: choices of a person.
+        notes: collects the guess.
 
     Raises:
         InvalidInput: if the chosen gait does not fit the legs.
@@ -174,7 +174,7 @@ def _leads_ahead(gait: str, azimuths: Sequence[float]) -> bool:
 
 
 def _by_hand(name: str | None, azimuths: Sequence[float]) -> GaitSpec:
-    """Return groups of legs, and the two legs between which forward is."""
+    """Return groups of legs, and the two legs between which the forward direction lies."""
     legs = range(1, len(azimuths) + 1)
 
     def off(pair: tuple[int, int]) -> float:

@@ -25,12 +25,12 @@ _LEAST = 60
 def find_meshes(
     posed: PosedRobot, origins: Mapping[int | None, FloatArray], notes: Notes
 ) -> dict[int | None, ModelMesh]:
-    """Return what is drawn of each link, in its frame; nothing for one without shapes.
+    """Return the drawn mesh of each link in its frame; links without shapes are left out.
 
     Args:
         posed: the robot.
-        origins: of the links' frames in the body frame, by joint; None for the torso.
-        notes: gets what is simplified.
+        origins: origins of the links' frames in the body frame, by joint; None for the torso.
+        notes: collects a note on simplified meshes.
     """
     geoms = {joint: _drawn(posed, joint) for joint in origins}
     all_geoms = chain.from_iterable(geoms.values())
@@ -58,7 +58,7 @@ def find_meshes(
 def _drawn(posed: PosedRobot, joint: int | None) -> list[int]:
     """Return the geoms that are drawn of a link: those that do not collide.
 
-    All of a body's, if none of its are only drawn, or a mesh of it is missing.
+    Of a body that has no such geoms, or of which a mesh is missing, all geoms are drawn.
     """
     drawn, compiled = [], posed.compiled
     for body in posed.bodies_of(joint):

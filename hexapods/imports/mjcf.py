@@ -38,7 +38,7 @@ _KEPT: dict[str, frozenset[str]] = {
     "actuator": frozenset(_ACTUATORS),
     "keyframe": frozenset({"key"}),
 }
-"""Which children stay, by tag; of others none."""
+"""Tags of the children that stay, by tag of the parent; of other parents no child stays."""
 
 
 def _words(text: str) -> frozenset[str]:
@@ -82,10 +82,10 @@ _TEXTS = _words(
 
 
 def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
-    """Remove what does not describe a body from an MJCF document; name its meshes in `meshes`.
+    """Remove elements that do not describe a body from an MJCF document; add meshes to `meshes`.
 
     Raises:
-        DamagedFile: if it has what cannot be read here, or too much.
+        DamagedFile: if it has elements that are refused, or too many elements.
     """
     for element in root.all(*_REFUSED):
         if element.tag == "model" and "file" not in element.attributes:

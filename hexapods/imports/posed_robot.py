@@ -1,6 +1,6 @@
 """A robot with all joints of its legs at 0, in the body frame: x right, y forward, z up.
 
-The origin is in the middle of where the legs are mounted. Each link is what moves with one joint;
+The origin is the centre of the legs' mounts. A link is the set of bodies that move with one joint;
 its frame has the axes of the body frame, and its origin on the joint's axis.
 """
 
@@ -24,8 +24,8 @@ class PosedRobot:
     Attributes:
         compiled: the model.
         skeleton: torso and legs.
-        legs: in no order until `order` is called.
-        turn_deg: forward, anticlockwise from x of the file.
+        legs: the legs, in no order until `order` is called.
+        turn_deg: direction of forward, anticlockwise from x of the file.
     """
 
     def __init__(self, compiled: Compiled, skeleton: Skeleton, pose: FloatArray) -> None:
@@ -44,7 +44,7 @@ class PosedRobot:
         self._joint_of_body = self._joints_that_move()
 
     def turn(self, forward_deg: float) -> None:
-        """Let a direction of the file be forward, anticlockwise from x."""
+        """Turn the body frame: forward is this direction, anticlockwise from x of the file [°]."""
         self.turn_deg = forward_deg
         cos, sin = math.cos(math.radians(forward_deg)), math.sin(math.radians(forward_deg))
         self._turn = np.round([[sin, -cos, 0], [cos, sin, 0], [0, 0, 1]], 15)
@@ -54,7 +54,7 @@ class PosedRobot:
         self.legs = [self.skeleton.legs[leg] for leg in legs]
 
     def mounts(self) -> FloatArray:
-        """Return where each leg's first joint is, (legs, 3) [m]."""
+        """Return the position of each leg's first joint, (legs, 3) [m]."""
         return np.array([self.anchor(leg.joints[0]) for leg in self.legs])
 
     def anchor(self, joint: int) -> FloatArray:
@@ -123,7 +123,7 @@ class PosedRobot:
         return mesh if self.kind(geom) == "mesh" and mesh >= 0 else None
 
     def triangles(self, geom: int) -> int:
-        """Return how many triangles a geom has."""
+        """Return the number of triangles of a geom."""
         mesh = self.mesh_of(geom)
         if mesh is None:
             return len(self.own_surface(geom)[1])
@@ -151,7 +151,7 @@ class PosedRobot:
 
 
 def resting_pose(model: mujoco.MjModel, like: FloatArray) -> FloatArray:
-    """Return `qpos` with the base as the file begins, and all joints as in another, in limits."""
+    """Return `qpos` with the initial pose of the base, and the joints of `like`, within limits."""
     pose = np.array(like)
     for joint in range(model.njnt):
         start = int(model.jnt_qposadr[joint])

@@ -29,7 +29,7 @@ class GroundShape:
     rotation: FloatArray
 
     def lowest_m(self, turn: FloatArray, origin: FloatArray, moved: FloatArray) -> float:
-        """Return the height of its lowest point after a motion of its link.
+        """Return the height of the shape's lowest point after a motion of its link [m].
 
         Args:
             turn: rotation about `origin`, (3, 3).
@@ -49,7 +49,7 @@ class GroundShape:
         return float(center[2] - drop)
 
     def as_geom(self, origin: FloatArray) -> ModelGeom:
-        """Return it in the frame of a link whose origin is given in the body frame."""
+        """Return the shape in the frame of a link whose origin is given in the body frame."""
         x, y, z = (float(value) for value in self.size_m)
         at = [float(value) + 0.0 for value in self.at_m - origin]
         return ModelGeom(self.kind, (x, y, z), (at[0], at[1], at[2]), quaternion(self.rotation))
@@ -92,7 +92,7 @@ def link_shapes(
 
     Args:
         posed: the robot.
-        joint: that moves the link.
+        joint: joint that moves the link.
         foot: centre and radius of the foot, if the link has one.
     """
     shapes = []
@@ -109,7 +109,7 @@ def link_shapes(
 def drop_touching(
     shapes: Sequence[GroundShape], lowest_m: Sequence[float], ground_m: float, notes: Notes
 ) -> list[GroundShape]:
-    """Leave out shapes that would touch the ground at home, where only feet do."""
+    """Drop the shapes that would touch the ground at home, where only feet have contact."""
     clear = [shape for shape, low in zip(shapes, lowest_m, strict=True) if low > ground_m]
     if len(clear) < len(shapes):
         notes.repair("shapes of legs that would touch the ground before the feet were left out")
@@ -117,7 +117,7 @@ def drop_touching(
 
 
 def _of_torso(posed: PosedRobot) -> list[int]:
-    """Return the torso's bodies without what hangs on locked joints, such as an arm."""
+    """Return the torso's bodies without those on locked joints, such as an arm."""
     model = posed.compiled.model
     locked = {int(model.jnt_bodyid[joint]) for joint in posed.skeleton.locked}
     away: set[int] = set()
@@ -128,13 +128,13 @@ def _of_torso(posed: PosedRobot) -> list[int]:
 
 
 def _touching(posed: PosedRobot, geoms: Sequence[int]) -> list[int]:
-    """Return the geoms that touch the ground; all if none does."""
+    """Return the geoms that collide; all if none does."""
     colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
     return colliding or list(geoms)
 
 
 def _simple_shape(posed: PosedRobot, geom: int) -> GroundShape | None:
-    """Return a geom that is simple already; None for a mesh."""
+    """Return the shape of a primitive geom; None for a mesh."""
     kind = posed.kind(geom)
     if kind == "mesh":
         return None

@@ -1,4 +1,4 @@
-"""Finds how a robot stands: a keyframe of the file, or all angles 0, or a stance that is searched.
+"""Finds a robot's stance: a keyframe of the file, or all angles 0, or the result of a search.
 
 A stance is good if the torso is clear of the ground, the feet are level, and each foot reaches the
 corners of a box around it.
@@ -46,11 +46,11 @@ class RobotWithLegs:
 
     Attributes:
         chains: the legs.
-        radii_m: of their feet.
-        names: of their joints in the file.
+        radii_m: radii of their feet.
+        names: names of their joints in the file.
         torso_bottom_m: lowest point of the torso in the body frame.
         keyframes: angles of the legs in each keyframe of the file.
-        at_rest: angles with which the file begins.
+        at_rest: angles of the legs in the initial pose of the file.
     """
 
     chains: Sequence[LegChain]
@@ -75,10 +75,10 @@ class RobotWithLegs:
 
 
 def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
-    """Return the angles with which the robot stands, leg by leg.
+    """Return the joint angles of the robot's stance, leg by leg [rad].
 
     Raises:
-        InvalidInput: if the chosen ones are not possible.
+        InvalidInput: if chosen angles, or a chosen keyframe, are not possible.
     """
     angles = _level(robot, _stance_of_file(robot, choices, notes), notes)
     if choices.home_rad:
@@ -130,7 +130,7 @@ def _within(robot: RobotWithLegs, angles: Angles) -> Angles:
 
 
 def _problem(robot: RobotWithLegs, angles: Angles) -> str | None:
-    """Return why a stance is not good; None if it is."""
+    """Return the reason that a stance is not good, in words; None if it is good."""
     for (chain, leg_angles), names in zip(_pairs(robot, angles), robot.names, strict=True):
         low, high = chain.limits
         out = np.flatnonzero((leg_angles < low - 1e-3) | (leg_angles > high + 1e-3))
@@ -148,7 +148,7 @@ def _problem(robot: RobotWithLegs, angles: Angles) -> str | None:
 
 
 def _unreached(chain: LegChain, angles: FloatArray) -> bool:
-    """Whether a foot does not reach its box; with two joints it reaches no box, only its height."""
+    """Whether a foot does not reach its box; False for legs of two joints, which reach no box."""
     if len(angles) < _FOLLOWING_JOINTS:
         return False
     angles = np.clip(angles, *chain.limits)
@@ -160,7 +160,7 @@ def _unreached(chain: LegChain, angles: FloatArray) -> bool:
 
 
 def _level(robot: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
-    """Move the feet up or down to one height, where they reach it."""
+    """Move the feet up or down to their mean height, if it is within reach."""
     bottoms = robot.bottoms_m(angles)
     if np.ptp(bottoms) < 1e-6:
         return angles
@@ -188,7 +188,7 @@ def _level(robot: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
 
 
 def _changed(robot: RobotWithLegs, angles: Angles, chosen: Mapping[str, float]) -> Angles:
-    """Return a stance with some angles as a person decided."""
+    """Return a stance with the joint angles that a person has chosen, by the joint's name."""
     places = {
         name: (leg, joint)
         for leg, names in enumerate(robot.names)
@@ -212,9 +212,9 @@ def _changed(robot: RobotWithLegs, angles: Angles, chosen: Mapping[str, float]) 
 
 
 def search(robot: RobotWithLegs) -> Angles:
-    """Return a stance with bent knees, in which legs that mirror each other do so.
+    """Return a stance with bent knees, symmetric for legs that mirror each other.
 
-    Of several postures the first from which all feet reach their boxes, or most.
+    Of several postures it is the first from which all feet reach their boxes, or most feet.
     """
     fewest, stance = len(robot.chains) + 1, list[FloatArray]()
     for lower in range(_POSTURES):
@@ -242,14 +242,14 @@ def _posture(robot: RobotWithLegs, number: int) -> Angles:
 
 
 def _wanted(chain: LegChain, torso_bottom_m: float, number: int) -> FloatArray:
-    """Return where a foot is to be from its mount, as shares of the leg's length, (3,).
+    """Return the target of a foot relative to its mount, as shares of the leg's length, (3,).
 
-    Well below, and out as the leg points at the angles 0.
+    The target is well below, and outward in the direction of the leg at the angles 0.
 
     Args:
         chain: the leg.
         torso_bottom_m: lowest point of the torso.
-        number: of the posture; each is a bit lower than the one before, or wider.
+        number: number of the posture; each is a bit lower than the one before, or wider.
     """
     mount = chain.anchors[0]
     straight = (chain.foot - mount) / chain.length_m
@@ -283,10 +283,10 @@ def _best(
 def _costs(
     chain: LegChain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
 ) -> FloatArray:
-    """Return how bad a leg stands at some angles, (k,).
+    """Return the cost of a leg's stance at each row of angles, (k,).
 
-    Good is: the foot where it is wanted, every direction easily reached, far from the limits,
-    small angles, and as the first leg stands.
+    The cost is low with the foot at its target, a Jacobian far from singular, and angles that are
+    small, far from their limits, and like those of the first leg.
     """
     length_m = chain.length_m
     feet = (chain.feet(angles) - chain.anchors[0]) / length_m

@@ -41,10 +41,10 @@ _XACRO = "http://www.ros.org/wiki/xacro"
 
 
 def check_expanded(root: Element) -> None:
-    """Check that a document is no xacro that is still to be expanded.
+    """Check that a document is no unexpanded xacro.
 
     Raises:
-        DamagedFile: if it is.
+        DamagedFile: if the document is a xacro.
     """
     for element in [root, *root.all()]:
         is_macro = element.tag.startswith("xacro:")
@@ -56,10 +56,10 @@ def check_expanded(root: Element) -> None:
 
 
 def clean_urdf(root: Element, meshes: MeshFiles) -> None:
-    """Remove what does not describe a body from a URDF document; name its meshes in `meshes`.
+    """Remove elements that do not describe a body from a URDF document; add meshes to `meshes`.
 
     Raises:
-        DamagedFile: if its links are no tree, or it has too much.
+        DamagedFile: if its links are no tree, or it has too many links or shapes.
     """
     check_expanded(root)
     for parent in [root, *root.all()]:

@@ -31,13 +31,13 @@ Interval = tuple[float, float]
 def clearances_m(
     robot: Robot, poses: FloatArray, steps: NDArray[np.int64], world: World
 ) -> FloatArray:
-    """Return how far the lowest point of each foot is above the ground, (k, legs) [m].
+    """Return the clearance of each foot: height of its lowest point over the ground, (k, legs) [m].
 
     Args:
         robot: the robot as it was built.
         poses: (k, 7 + joints).
         steps: the step that each pose belongs to, counted from 0, (k,).
-        world: what happens by step; of a leg that is gone the foot is infinitely far from it.
+        world: disturbances by step; the foot of a lost leg has an infinite clearance.
     """
     feet = legs_of(robot).foot_positions(poses)
     clearance: FloatArray = feet[..., 2] - robot.foot_radii_m
@@ -57,14 +57,14 @@ def _stretches(steps: NDArray[np.int64], world: World) -> Iterator[tuple[slice, 
 
 
 def stance_intervals(times_s: FloatArray, clearance_m: FloatArray) -> list[Interval]:
-    """Return when a foot is on the ground.
+    """Return the intervals in which a foot is on the ground [s].
 
     Between two poses it touches or leaves the ground where the straight line between its clearances
     crosses the threshold.
 
     Args:
-        times_s: ascending, (k,).
-        clearance_m: of the foot, (k,).
+        times_s: times of the poses, ascending, (k,).
+        clearance_m: clearance of the foot, (k,).
     """
     if not len(times_s):
         return []

@@ -87,12 +87,12 @@ def observation_of(
     """Return the observation mode of a lane.
 
     Args:
-        observation: what is asked for the lane; None if nothing is.
-        of_training: the mode in which its agent has practised; None without a training.
-        default: the mode of a lane without a training for which nothing is asked.
+        observation: mode that is requested for the lane; None if none is.
+        of_training: mode in which its agent has practised; None without a training.
+        default: mode of a lane without a training for which none is requested.
 
     Raises:
-        InvalidInput: if what is asked contradicts the training.
+        InvalidInput: if the requested mode contradicts the training.
     """
     if of_training is None:
         return default if observation is None else observation
@@ -134,11 +134,11 @@ def lane_config(
 
 
 def plans_with(lane: LaneConfig, walk: WalkingProblem) -> PlanningModel | None:
-    """Return what a lane's search knows in a race; None if its agent does not search.
+    """Return the model that a lane's search plans with; None if its agent does not search.
 
-    What is left out in the lane, the start, is called `world` where nothing changes after it, and
-    `nominal` where nothing held at it. No agent is imported: of one that is not loaded, as when its
-    package was removed, it is what the lane says.
+    Where the lane names none, that is the world at the start: `world` where nothing changes later,
+    `nominal` where nothing holds at the start, else `start`. No agent is imported: for one that is
+    not loaded, as when its package was removed, the lane's own value is returned.
     """
     if lane.plans_with is not None or not registry.is_loaded(lane.agent):
         return lane.plans_with

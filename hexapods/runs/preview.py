@@ -139,7 +139,7 @@ class Preview(Record):
 
 
 def preview(walk: WalkingProblem) -> Preview:
-    """Return what is known of a walking problem beforehand; nothing is simulated."""
+    """Return the preview of a walking problem, computed without simulation."""
     robot, gait, grid = walk.robot, walk.resolved_gait, walk.grid
     legs, support = legs_of(robot), Support(robot, gait)
     least, cells = support.least_margin_m(gait.groups), len(grid)

@@ -1,6 +1,6 @@
 """Rebuild a learner at any step of its practice from the log of transitions, without physics.
 
-A new learner, with the seed of the training, is fed what was logged. It must choose the same
+A new learner, with the seed of the training, is fed the logged transitions. It must choose the same
 actions: then it is the learner of the training, to the last bit.
 """
 
@@ -32,7 +32,7 @@ class LoggedSensors:
     """Implements the `Observe` protocol by the log; the plan of the feet follows from the actions.
 
     Attributes:
-        feet: the feet by dead reckoning.
+        feet: offsets of the feet by dead reckoning.
     """
 
     def __init__(self, walk: WalkingProblem, observation: Observation) -> None:
@@ -49,7 +49,7 @@ class LoggedSensors:
         self.see(self.feet.commanded, self.feet.commanded)
 
     def see(self, observation: Cells, measured: Cells) -> None:
-        """Set what is observed; no measured cells where they were not recorded."""
+        """Set the observed and the measured cells; the latter are () where not recorded."""
         self._cells: dict[Observation, Cells] = {self._observation: observation}
         if measured:
             self._cells["measured"] = measured
@@ -109,12 +109,12 @@ class ExplainedStep:
     """A step, explained by the learner that took it.
 
     Attributes:
-        step: counted from 1.
-        logged: what is in the log.
-        visits: how often each action had been tried in this state before, (groups, cells); None for
-            a learner that does not count.
-        choice: why it chose its action; None for a learner that does not explain.
-        update: how its values changed; None for one that does not explain, or did not learn.
+        step: number of the step, from 1.
+        logged: entry of the log for the step.
+        visits: visit counts of the actions in this state before the step, (groups, cells); None
+            for a learner that does not count visits.
+        choice: explanation of its choice; None for a learner that does not explain.
+        update: explanation of its update; None for one that does not explain, or did not learn.
         chose_early: whether it chose before it learned from the step before.
     """
 
@@ -133,7 +133,7 @@ class RebuiltLearner:
         agent: the learner.
         learns: whether it learned from its steps.
         step: number of steps that it has taken.
-        tuned: number of changes of settings that it was told of.
+        tuned: number of changes of settings that were applied to it.
     """
 
     def __init__(
@@ -152,7 +152,7 @@ class RebuiltLearner:
 
     @property
     def chooses_early(self) -> bool:
-        """Whether it chooses the next action before it learns from the last one."""
+        """Whether the learner chooses the next action before it learns from the last one."""
         return self.learns and bool(getattr(self.agent, "is_on_policy", False))
 
     @property
@@ -213,7 +213,7 @@ class RebuiltLearner:
         return choice
 
     def _end(self, logged: Logged, explain_next: bool) -> Transition | None:
-        """Return the transition from which it learns; None where it learns nothing."""
+        """Return the transition from which the learner learns; None where it learns nothing."""
         self._sensors.move(logged.action)
         self._next_action = self._next_choice = None
         if not self.learns or not logged.next_observation:

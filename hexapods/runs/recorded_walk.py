@@ -34,7 +34,7 @@ class RecordedSteps:
 
     Attributes:
         start_qpos: the pose before the first step of the walk, (7 + joints,).
-        steps: in order, each with its motion; steps between them may be missing.
+        steps: recorded steps in order, each with its motion; steps between them may be missing.
     """
 
     start_qpos: NDArray[np.float32]
@@ -45,7 +45,7 @@ class RecordedSteps:
         return cast(Motion, self.steps[index].motion)
 
     def choices(self, newest: int) -> list[tuple[Cells | None, Action | None]]:
-        """Return what was observed and done in the newest steps, at most so many, in order."""
+        """Return observation and action of each of the `newest` steps at the end, in order."""
         if isinstance(self.steps, LaneSteps):
             return list(self.steps.choices(newest))
         return [(step.observation, step.action) for step in self.steps[-newest:]]

@@ -93,7 +93,7 @@ class LaneSteps(Sequence[LaneStep]):
         return self.figures.nbytes + packed + newest
 
     def choices(self, newest: int) -> list[tuple[Cells, Action]]:
-        """Return what was observed and done in the newest steps, at most so many, in order."""
+        """Return observation and action of each of the `newest` steps at the end, in order."""
         rows = self.figures[-newest:]
         observed, done = rows["observation"].tolist(), rows["action"].tolist()
         return [(tuple(o), Action(*a)) for o, a in zip(observed, done, strict=True)]
@@ -185,10 +185,10 @@ _NOT_HASHED = ("decision_s", "lowest", "highest")
 
 
 def recording_sha256(lanes: Iterable[LaneRecording]) -> str:
-    """Return the SHA-256 of what a recording has of each lane, without the times of decisions.
+    """Return the SHA-256 of the steps of each lane of a recording, without decision times.
 
-    It is of the figures of the steps, which follow from the motion to the last bit and are in
-    memory. The reason of a failure does not count: it may name an object by its address.
+    The hash is of the figures of the steps, which follow from the motion to the last bit and are
+    in memory. The reason of a failure does not count: it may name an object by its address.
     """
     digest = hashlib.sha256()
     for lane in lanes:
@@ -254,7 +254,7 @@ class PracticeRecording:
                 self._evaluations[number] = replace(evaluation, motion=None)
 
     def without_evaluation_motions(self) -> "PracticeRecording":
-        """Return a copy that knows of its evaluations only what they reached.
+        """Return a copy whose evaluations have their distances, but no motion.
 
         It takes a fraction of the memory: an evaluation has the motion of 50 steps.
         """

@@ -28,11 +28,11 @@ class StepArrays:
 
         Args:
             lane: number of the lane.
-            arrays: by their names in a file, without the lane's: those of `COLUMNS`, the fields of
+            arrays: arrays by name in a file, without the lane's: those of `COLUMNS`, the fields of
                 `Motion` with a row for each frame, and `futures`, the numbers of rows of `FUTURES`.
 
         Raises:
-            ValueError: if they do not fit together.
+            ValueError: if the lengths of the arrays do not fit together.
         """
         self._lane, self._arrays = lane, arrays
         if arrays["frames"].min() < 1:
@@ -132,7 +132,7 @@ class StepArrays:
         )
 
     def _futures_of(self, index: int) -> tuple[Future, ...]:
-        """Return what a search simulated for a step."""
+        """Return the futures that a search simulated in a step, by the index of the step."""
         if not self._futures:
             return ()
         rows_of_step = slice(self._futures[index], self._futures[index + 1])

@@ -26,16 +26,16 @@ class Learner:
     Attributes:
         walker: the robot that practises, with its agent.
         rng: the generator that the agent learns with.
-        evaluator: makes a walker at rest, in a world, that does its best with what was learned so
-            far and learns nothing; its chance comes from the generator that it is given.
+        evaluator: makes a walker at rest, in a world, whose agent follows the learned policy and
+            neither explores nor learns; its random numbers come from the given generator.
         baseline: makes the walker of the one-step look-ahead agent, which knows the world.
-        step: how many steps it has learned.
-        episode_reward_m: earned since the episode began.
-        greedy_distance_m: of the baseline, once it was measured.
+        step: number of steps that were learned.
+        episode_reward_m: reward since the episode began.
+        greedy_distance_m: distance of the baseline, once it was measured.
         measured_in: the world in which the baseline was measured.
         due_epsilon: ε of the newest step while its evaluation is yet to come; None if none is.
         next_action: the action that an on-policy agent has chosen to take next.
-        next_epsilon: ε when it was chosen.
+        next_epsilon: ε when that action was chosen.
         fell_at_step: the first step in which the robot fell, counted from 0; None if it did not.
         newest_epsilon: ε of the newest step.
         logged: steps that were logged since `take_transitions`; None where no log is kept.
@@ -69,7 +69,7 @@ class Learner:
         return self.walker.simulator.world
 
     def conditions(self, steps: int) -> World:
-        """Return what holds in the next step, or after the last of `steps` steps in that one."""
+        """Return the conditions of the next step, or of the last step once `steps` are done."""
         return self.world.as_of(min(self.step, steps - 1))
 
     def take_transitions(self) -> Transitions | None:
@@ -80,10 +80,10 @@ class Learner:
         return transitions_of(self.step - len(steps), steps)
 
     def disturb(self, disturbance: Disturbance, config: TrainingConfig) -> Disturbance:
-        """Let something happen from the next step on; an evaluation in the new world is due.
+        """Add a disturbance from the next step on; an evaluation in the new world is due.
 
         Args:
-            disturbance: what happens. Its `at_step` is replaced by the next step, of sensor noise
+            disturbance: the new one. Its `at_step` is replaced by the next step, of sensor noise
                 by the one after: the feet were measured already.
             config: the training's config.
 
@@ -91,8 +91,8 @@ class Learner:
             the disturbance, with the step in which it begins.
 
         Raises:
-            InvalidInput: if it cannot happen to this robot, contradicts the world, or the training
-                has no more steps.
+            InvalidInput: if the disturbance cannot happen to this robot, contradicts the world, or
+                the training has no more steps.
         """
         next_step = self.step + isinstance(disturbance, SensorNoise)
         started = replace(disturbance, at_step=next_step)

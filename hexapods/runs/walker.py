@@ -43,10 +43,10 @@ class FutureNode:
         """Create a node.
 
         Args:
-            expand: simulates from it.
-            state: its state.
-            observed: of the root, what the robot's sensors say.
-            legal: of the root, its legal actions.
+            expand: simulator that expands the node.
+            state: state of the node.
+            observed: sensors of the robot, for the root node.
+            legal: legal actions, for the root node.
         """
         self.state, self._expand = state, expand
         if observed is not None:
@@ -125,15 +125,15 @@ class Sensors:
 class SimulatorExpand:
     """Implements the `Expand` protocol by simulation, and counts simulated transitions.
 
-    A search begins in the state that the robot's sensors tell: where they are noisy, the feet of
-    the root stand where they are measured. All of a search holds under the conditions of the step
-    that is about to be taken: nothing that is to come is foreseen.
+    A search begins in the state that the robot's sensors measure: where they are noisy, the root
+    has the measured offsets of the feet. All of a search is simulated under the conditions of the
+    step that is about to be taken: later disturbances are not foreseen.
 
     Attributes:
         transitions: number of transitions simulated so far.
         budget: most transitions that may be simulated; None for any number.
         here: root node, the current state of the robot.
-        interrupt: called before each batch; may raise `SearchInterrupted`.
+        interrupt: function called before each batch; may raise `SearchInterrupted`.
     """
 
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
@@ -156,7 +156,7 @@ class SimulatorExpand:
             the resulting nodes, and the rewards [m], (n,).
 
         Raises:
-            BudgetExceeded: if that would be more transitions than the budget.
+            BudgetExceeded: if the batch would exceed the budget of transitions.
         """
         if self.budget is not None and self.transitions + len(actions) > self.budget:
             raise BudgetExceeded(
@@ -181,7 +181,7 @@ class SimulatorExpand:
 
         Args:
             state: the true state.
-            observed: what the robot's sensors say.
+            observed: sensors of the robot.
             legal: the legal actions.
         """
         if observed.error_m is not None:
@@ -189,7 +189,7 @@ class SimulatorExpand:
         self.here = FutureNode(self, state, observed, legal)
 
     def offsets_m(self, state: WalkState) -> Sequence[tuple[float, float]]:
-        """Return where the feet are measured in a state, per group [m]."""
+        """Return the measured offset (x, y) of each group from home in a state [m]."""
         return self._simulator.group_offsets(state)
 
     def legal(self, state: WalkState) -> Sequence[Action]:

@@ -126,7 +126,7 @@ class PracticeShow:
         return [tuple(number * self._step_s for number in self._step_numbers)]
 
     def marks(self) -> list[ReplayMark]:
-        """Return what happened, in order of time."""
+        """Return marks of the evaluations, disturbances and the fall so far, in order of time."""
         last = self._step_numbers[-1] if self._step_numbers else 0
         marks = [
             ReplayMark("evaluation", ghost.step * self._step_s, 0, ghost.step, ghost.distance_m)

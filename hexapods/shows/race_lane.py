@@ -45,7 +45,7 @@ class RaceLane:
 
     @property
     def is_over(self) -> bool:
-        """Whether it can take no further steps: it has used all of them, or failed."""
+        """Whether the lane can take no further steps: all are recorded, or it has failed."""
         return self.all_recorded or self.recording.failure is not None
 
     @property
@@ -54,7 +54,7 @@ class RaceLane:
         return self.timetable.total_s
 
     def update(self) -> None:
-        """Extend the timetable by new steps, and look for what happened in them."""
+        """Extend the timetable by new steps, and look for a crossing or a fall in them."""
         self.timetable.extend(self.recording.steps)
         first, end = self._searched, len(self.timetable)
         if first == end:

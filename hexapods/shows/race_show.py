@@ -26,9 +26,9 @@ class Original(NamedTuple):
     """The race from which the shown one branched off.
 
     Attributes:
-        step: number of steps that they share.
-        world: its world.
-        lanes: its recording, which may grow.
+        step: number of steps that both races share.
+        world: world of the original.
+        lanes: recordings of the original's lanes, which may grow.
     """
 
     step: int
@@ -66,7 +66,7 @@ class RaceShow:
         self._source: Sequence[LaneRecording] | None = None
         """The recordings that are played."""
         self._is_final = False
-        """Whether they are those of the run since it has ended."""
+        """Whether the recordings are those of the run since it has ended."""
         self._branch_step = 0
         self._original_lanes: list[RaceLane] = []
         self._prefix: list[LaneRecording] = []
@@ -111,7 +111,10 @@ class RaceShow:
         return [lane.timetable.ends for lane in self._lanes]
 
     def marks(self) -> list[ReplayMark]:
-        """Return what happened, in order of time, as far as all lanes are computed."""
+        """Return marks of time-out, disturbances, crossings and falls, in order of time.
+
+        Marks after the time up to which all lanes are computed are left out.
+        """
         marks = []
         if self.first_finish_s is not None:
             marks.append(ReplayMark("time-out", self.first_finish_s, None, None, None))
@@ -167,7 +170,7 @@ class RaceShow:
     def seek(self, time_s: float) -> None:
         """Set the playback position to a race time [s], at most to where all lanes are computed.
 
-        What is the moment of the time-out, or of the end, for pages that know milliseconds, is it.
+        A time within `SAME_MOMENT_S` of time-out or the end is set to it: pages know milliseconds.
         """
         self._update_lanes()
         self._freeze_left_s = 0.0

@@ -1,4 +1,4 @@
-"""The moment that a stage shows, as pages are told of it: without poses, in rounded numbers."""
+"""View of a stage frame that is sent to pages: without poses, in rounded numbers."""
 
 import math
 from dataclasses import dataclass
@@ -117,7 +117,7 @@ class SceneView(Record):
 
 
 def scene_view(frame: StageFrame) -> SceneView:
-    """Return a frame as pages are told of it."""
+    """Return the view of a stage frame that is sent to pages, in rounded numbers."""
     lanes = zip(frame.lanes, frame.spec.lane_specs, strict=False)
     return SceneView(
         run_id=frame.run_id,
@@ -166,7 +166,7 @@ def _lane(number: int, lane: LaneFrame, spec: LaneSpec) -> SceneLane:
 
 
 def _ghost_lanes(frame: StageFrame) -> list[GhostLane]:
-    """Return where the ghosts of another run are; none before they part from this one."""
+    """Return the ghosts of another run by lane; none before the two runs part."""
     lane_specs = (frame.spec.ghosts or frame.spec).lane_specs
     return [
         GhostLane(

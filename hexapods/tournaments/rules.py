@@ -160,7 +160,7 @@ class Draw(Record):
     """A seed and a world on which all entries are judged, so that they can be compared in pairs.
 
     Attributes:
-        seed: of practice and race.
+        seed: seed of practice and race.
         world: name of the world, or its disturbances.
     """
 
@@ -169,7 +169,7 @@ class Draw(Record):
 
 
 def commitment_of(secret: str) -> str:
-    """Return what is published of a secret before the end: its SHA-256, hexadecimal.
+    """Return the commitment to a secret, published before the end: its SHA-256, hexadecimal.
 
     With it anyone can check after the end that the draws were fixed at the beginning.
 

@@ -53,10 +53,10 @@ class JudgedEntry(Record):
     """An entry with its judgements.
 
     Attributes:
-        number: from 0, in the order of their entering; the references come first.
-        name: of its entrant, or of the reference.
-        entry: as it was judged.
-        judgements: on each draw, in their order.
+        number: number from 0, in the order of entering; the references come first.
+        name: name of its entrant, or of the reference.
+        entry: config of the entry, as it was judged.
+        judgements: judgement on each draw, in the order of draws.
 
     Raises:
         InvalidInput: if the name is not valid.
@@ -73,20 +73,20 @@ class JudgedEntry(Record):
 
 @dataclass(frozen=True, kw_only=True)
 class TournamentFile(Record):
-    """A tournament that has ended, complete: what is needed to repeat it, and what came of it.
+    """A tournament that has ended, complete: all data to repeat it, and its results.
 
     Attributes:
-        format: of the file.
-        title: of the tournament.
-        rules: its rules.
-        commitment: of the secret, which was published at the beginning.
-        secret: from which the draws follow.
-        entries: that were judged on all draws.
-        standings: best first.
-        tables: by SHA-256 the trained tables, as base64 of their files.
-        robots: by id the documents of stored robots that rules or entries name.
-        versions: of the packages on which the results depend, and the processor's kind.
-        machine: on which it was judged, and as `PROBE` what `probe_m` returns on it.
+        format: version of the file's format.
+        title: title of the tournament.
+        rules: rules of the tournament.
+        commitment: commitment to the secret, which was published at the beginning.
+        secret: secret from which the draws follow.
+        entries: entries that were judged on all draws.
+        standings: ranked entries, best first.
+        tables: the trained tables by SHA-256, as base64 of their files.
+        robots: documents of stored robots that rules or entries name, by id.
+        versions: versions of the packages on which the results depend, and the processor's kind.
+        machine: machine on which it was judged, and as `PROBE` the result of `probe_m` on it.
 
     Raises:
         InvalidInput: if the title is not valid, or the entries are not numbered ascending.
@@ -127,13 +127,13 @@ def tournament_file(
     entries: Sequence[JudgedEntry],
     tables: Iterable[bytes] = (),
 ) -> TournamentFile:
-    """Return a tournament that has ended, with its standings, and with what is needed to repeat it.
+    """Return a tournament that has ended, with its standings and all data to repeat it.
 
     Args:
-        title: of the tournament.
-        rules: its rules.
-        secret: from which the draws follow.
-        entries: that were judged on all draws, ascending by their numbers.
+        title: title of the tournament.
+        rules: rules of the tournament.
+        secret: secret from which the draws follow.
+        entries: entries that were judged on all draws, ascending by their numbers.
         tables: files of the trained tables that entered.
 
     Raises:
@@ -158,15 +158,15 @@ def tournament_file(
 
 
 def own_versions() -> dict[str, str]:
-    """Return what results of a tournament depend on here: versions, and the processor's kind."""
+    """Return the versions and kind of processor here, on which a tournament's results depend."""
     return {**versions(), "processor": instructions()}
 
 
 def probe_m(rules: TournamentRules, draw: Draw) -> list[float]:
-    """Return how far the random walk is after each of its steps on a draw [m].
+    """Return the distances of the random walk after each of its steps on a draw [m].
 
-    Where a tournament does not repeat to the last bit it shows from which step on: that walk
-    decides nothing by what it measures.
+    Where a tournament does not repeat to the last bit, the distances show the first step that
+    differs: the random walk's decisions depend on no measurement.
     """
     training = replace(
         training_of(completed(EntryConfig(agent="random-walk"), rules), rules),
@@ -214,11 +214,11 @@ def write_file(tournament: TournamentFile) -> bytes:
 
 
 def read_file(data: bytes, name: str) -> TournamentFile:
-    """Decode a tournament. Whether it is true is for `hexapods.tournaments.verification` to tell.
+    """Decode a tournament. `hexapods.tournaments.verification` checks whether it repeats.
 
     Args:
         data: content of the file.
-        name: of the file, for messages.
+        name: name of the file, for messages.
 
     Raises:
         OtherFormat: if it is of another version.

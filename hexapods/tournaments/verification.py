@@ -1,4 +1,4 @@
-"""Repeat a tournament from its file, and tell what differs."""
+"""Repeat a tournament from its file, and list the differences."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Future, as_completed
@@ -39,7 +39,7 @@ class TournamentVerification(NamedTuple):
     """Outcome of repeating a tournament.
 
     Attributes:
-        differences: what differs, a sentence each; none if it repeats to the last bit.
+        differences: sentences, one per difference; none if it repeats to the last bit.
         rounding: the same in a sentence, if nothing differs but the last digits of distances: from
             which step on, by how much, and that the ranks hold. None else.
         ranks_hold: whether each entry has the same ranks; None if they could not be compared.
@@ -55,7 +55,7 @@ def verify(
     workers: int | None = None,
     on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
 ) -> list[str]:
-    """Return what differs in a repeated tournament, a sentence each; see `verification`."""
+    """Return the differences of a repeated tournament, a sentence each; see `verification`."""
     return verification(tournament, workers, on_judged).differences
 
 
@@ -64,7 +64,7 @@ def verification(
     workers: int | None = None,
     on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
 ) -> TournamentVerification:
-    """Repeat a tournament, and return what differs.
+    """Repeat a tournament, and return the differences.
 
     Its secret is compared with its commitment, the references with those of every tournament, each
     judgement and each standing with the repeated one, to the last bit. A file cannot show which
@@ -73,7 +73,7 @@ def verification(
     Args:
         tournament: the tournament.
         workers: number of processes; None for one per core.
-        on_judged: called with how many draws of entries have been judged, and of how many.
+        on_judged: called with the numbers of draws of entries that were judged, and of all.
 
     Raises:
         InvalidInput: if the number of workers is not valid.
@@ -138,7 +138,7 @@ def _ranks_hold(tournament: TournamentFile, repeated: Repeated) -> bool | None:
 
 
 def _largest_m(judged: Sequence[JudgedEntry], repeated: Repeated) -> float | None:
-    """Return by how much distances differ at most [m]; None if failures differ."""
+    """Return the largest difference of distances [m]; None if failures differ."""
     differences_m = [0.0]
     for entry in judged:
         if len(entry.judgements) != len(repeated[entry.number]):
@@ -151,7 +151,7 @@ def _largest_m(judged: Sequence[JudgedEntry], repeated: Repeated) -> float | Non
 
 
 def _rounding(tournament: TournamentFile, largest_m: float, draw: Draw) -> str:
-    """Say that last digits differ: by how much, and from which step of a walk on."""
+    """Describe a difference in last digits: its size, and the first step of a walk that differs."""
     in_file = tournament.machine.get(PROBE)
     again = probe_m(tournament.rules, draw)
     step = None
@@ -169,7 +169,7 @@ def _rounding(tournament: TournamentFile, largest_m: float, draw: Draw) -> str:
 
 
 def version_note(tournament: TournamentFile) -> str | None:
-    """Return how the versions here differ from those that judged; None if results must be equal."""
+    """Return a sentence on versions that differ from the file's; None if results must be equal."""
     # Python is in the file, but results do not depend on it.
     filed = {name: version for name, version in tournament.versions.items() if name != "python"}
     other = difference(filed, own_versions())
