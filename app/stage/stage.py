@@ -227,7 +227,7 @@ class Stage:
                 self._show.retime(clock)
                 self._clock = clock
             if speed is not None:
-                self._speed = None if isinstance(speed, str) else speed
+                self._speed = None if isinstance(speed, str) else float(speed)
             if end_at_time_out is not None:
                 self._show.ends_at_time_out = end_at_time_out
             self._members |= members

@@ -30,16 +30,16 @@ class LegPreview(Record):
     """A leg, with its foot in the robot frame.
 
     Attributes:
-        leg: its number.
+        leg: number of the leg.
         group: number of its group, from 0.
         side: 1 on the right, -1 on the left, 0 on the axis or mirrored otherwise.
         home_m: place of its foot at home: right, forward.
-        mass_kg: its mass, with the foot.
-        out_of_reach: what it cannot reach of its grid, in a sentence; null if it reaches all.
+        mass_kg: mass of the leg, with the foot.
+        out_of_reach: sentence on a cell of its grid that it cannot reach; null if it reaches all.
         follows_grid: whether its foot can go to any place near home; one of two joints cannot.
-        built: all its numbers, as in a request: its place by `x_m` and `y_m`.
-        links_m: its joints and its foot while the robot stands, from the torso outward: right,
-            forward, up from the torso's centre; null if it cannot stand.
+        built: all numbers of the leg, as in a request: its place by `x_m` and `y_m`.
+        links_m: places of its joints and foot while the robot stands, from the torso outward:
+            right, forward, up from the torso's centre; null if it cannot stand.
     """
 
     leg: int
@@ -58,10 +58,10 @@ class GroupPreview(Record):
     """A group of legs.
 
     Attributes:
-        legs: their numbers.
-        margin_m: how far the centre of mass is inside the polygon of the other feet, while these
-            swing; below 0 the robot tips.
-        back_m, ahead_m: how far its feet reach from home; null where they reach all that can occur.
+        legs: numbers of the legs.
+        margin_m: support margin while the group swings: distance of the centre of mass from the
+            edge of the polygon of the other feet; below 0 the robot tips.
+        back_m, ahead_m: reach of its feet from home; null where they reach all that can occur.
     """
 
     legs: list[int]
@@ -76,8 +76,8 @@ class BetterGroups(Record):
 
     Attributes:
         gait: the gait with these groups.
-        margin_m: its least support margin.
-        states: its number of states.
+        margin_m: least support margin of the gait.
+        states: number of states with the gait.
     """
 
     gait: AnyGait
@@ -91,7 +91,7 @@ class Preview(Record):
 
     Attributes:
         gait: the gait with its groups leg by leg.
-        forward_deg: its forward direction, anticlockwise from body x.
+        forward_deg: forward direction of the gait, anticlockwise from body x.
         cells_m: cells of the foot grid by their places from home: right, forward.
         built: all numbers of the robot that legs share; a torso that is no box has null for one.
         legs: leg by leg.
@@ -99,18 +99,18 @@ class Preview(Record):
         margin_m: least support margin over the groups.
         tips: whether that is below 0: it then tips onto the feet that swing, and drags.
         stands: whether it stands on all of its feet.
-        mass_kg: of the whole robot.
+        mass_kg: mass of the whole robot.
         states, actions, values: size of a table: states, legal actions in each, and their product.
         table_fits: whether a learner with a table can start.
         law_m_per_step: advance of the steady walk by the law without slip.
-        law_m: that of a race of 50 steps.
-        out_of_reach: what a leg cannot reach, in a sentence; null if all can.
+        law_m: advance of 50 steps, a race, by that law.
+        out_of_reach: sentence on a cell that a leg cannot reach; null if all legs reach all.
         largest_side_m: largest grid side with which it may walk; null if it reaches none.
         safe_side_m: largest grid side with which every action is always possible; likewise.
-        beside_grid: which legs cannot follow the grid, in a sentence; null if all can.
+        beside_grid: sentence on the legs that cannot follow the grid; null if all can.
         better: groups to take instead; null if it does not tip, or tips with any.
         recommended_agent: learner to begin with, by the support margin.
-        recommended_because: why, in a sentence.
+        recommended_because: reason of the recommendation, in a sentence.
     """
 
     gait: AnyGait

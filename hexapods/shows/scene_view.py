@@ -19,7 +19,7 @@ class SceneLane(Record):
     """A lane at the moment that the stage shows; `halted` if its run ended before it was done.
 
     Attributes:
-        step: the step that it takes, counted from 1; at its end the last.
+        step: number of the present step, from 1; at the end of the lane the last.
         steps_made: steps that have ended.
         done: whether it has used all its steps, or failed.
     """
@@ -72,7 +72,7 @@ class SceneActionValues(Record):
     """Action values of a learner in its present state.
 
     Attributes:
-        values_m: by leg pair and cell; null where the foot already stands.
+        values_m: action values by leg pair and cell; null where the foot already stands.
         current: the cell of each leg pair.
     """
 

@@ -42,11 +42,11 @@ class TournamentRules(WalkingProblem):
         draws: number of secret draws; each is a seed and a world.
         worlds: names of worlds, or disturbances as on the command line, of which each draw has one.
         robots: creatures that an entry may choose beside `robot`.
-        gaits: of each of `robots`, in their order; empty for those that suit them, which are then
+        gaits: gait of each of `robots`, in order; empty for those that suit them, which are then
             written out, since what suits a stored robot is not known everywhere.
         tables: whether a trained table may enter.
-        transitions: the most that a search simulates on each draw; a time would depend on the
-            machine.
+        transitions: most transitions that a search simulates on each draw; a time would depend on
+            the machine.
 
     Raises:
         UnknownName, InvalidInput: if a value is invalid.

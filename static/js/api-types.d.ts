@@ -207,11 +207,11 @@ export interface BetterGroups {
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
-   * its least support margin.
+   * least support margin of the gait.
    */
   margin_m: number;
   /**
-   * its number of states.
+   * number of states with the gait.
    */
   states: number;
 }
@@ -1897,7 +1897,7 @@ export interface SceneLane {
   color: string;
   distance_m: number;
   /**
-   * the step that it takes, counted from 1; at its end the last.
+   * number of the present step, from 1; at the end of the lane the last.
    */
   step: number;
   steps: number;
@@ -1944,7 +1944,7 @@ export interface SceneActionValues {
   cell_names: string[];
   cells_m: [number, number][];
   /**
-   * by leg pair and cell; null where the foot already stands.
+   * action values by leg pair and cell; null where the foot already stands.
    */
   values_m: (number | null)[][];
   visits: (number | null)[][];
@@ -2699,19 +2699,19 @@ export interface GivenLesson {
  */
 export interface GroupPreview {
   /**
-   * their numbers.
+   * numbers of the legs.
    */
   legs: number[];
   /**
-   * how far the centre of mass is inside the polygon of the other feet, while these swing; below 0 the robot tips.
+   * support margin while the group swings: distance of the centre of mass from the edge of the polygon of the other feet; below 0 the robot tips.
    */
   margin_m: number;
   /**
-   * how far its feet reach from home; null where they reach all that can occur.
+   * reach of its feet from home; null where they reach all that can occur.
    */
   back_m: number | null;
   /**
-   * how far its feet reach from home; null where they reach all that can occur.
+   * reach of its feet from home; null where they reach all that can occur.
    */
   ahead_m: number | null;
 }
@@ -2763,7 +2763,7 @@ export interface LandingsView {
  */
 export interface LegPreview {
   /**
-   * its number.
+   * number of the leg.
    */
   leg: number;
   /**
@@ -2782,11 +2782,11 @@ export interface LegPreview {
    */
   home_m: [number, number];
   /**
-   * its mass, with the foot.
+   * mass of the leg, with the foot.
    */
   mass_kg: number;
   /**
-   * what it cannot reach of its grid, in a sentence; null if it reaches all.
+   * sentence on a cell of its grid that it cannot reach; null if it reaches all.
    */
   out_of_reach: string | null;
   /**
@@ -2794,13 +2794,13 @@ export interface LegPreview {
    */
   follows_grid: boolean;
   /**
-   * all its numbers, as in a request: its place by `x_m` and `y_m`.
+   * all numbers of the leg, as in a request: its place by `x_m` and `y_m`.
    */
   built: {
     [k: string]: number;
   };
   /**
-   * its joints and its foot while the robot stands, from the torso outward: right, forward, up from the torso's centre; null if it cannot stand.
+   * places of its joints and foot while the robot stands, from the torso outward: right, forward, up from the torso's centre; null if it cannot stand.
    */
   links_m: [number, number, number][] | null;
 }
@@ -3443,7 +3443,7 @@ export interface Preview {
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
-   * its forward direction, anticlockwise from body x.
+   * forward direction of the gait, anticlockwise from body x.
    */
   forward_deg: number;
   /**
@@ -3477,7 +3477,7 @@ export interface Preview {
    */
   stands: boolean;
   /**
-   * of the whole robot.
+   * mass of the whole robot.
    */
   mass_kg: number;
   /**
@@ -3501,11 +3501,11 @@ export interface Preview {
    */
   law_m_per_step: number;
   /**
-   * that of a race of 50 steps.
+   * advance of 50 steps, a race, by that law.
    */
   law_m: number;
   /**
-   * what a leg cannot reach, in a sentence; null if all can.
+   * sentence on a cell that a leg cannot reach; null if all legs reach all.
    */
   out_of_reach: string | null;
   /**
@@ -3517,7 +3517,7 @@ export interface Preview {
    */
   safe_side_m: number | null;
   /**
-   * which legs cannot follow the grid, in a sentence; null if all can.
+   * sentence on the legs that cannot follow the grid; null if all can.
    */
   beside_grid: string | null;
   /**
@@ -3529,7 +3529,7 @@ export interface Preview {
    */
   recommended_agent: string;
   /**
-   * why, in a sentence.
+   * reason of the recommendation, in a sentence.
    */
   recommended_because: string;
 }
@@ -4413,7 +4413,7 @@ export interface TournamentRules {
       | undefined;
   }[];
   /**
-   * of each of `robots`, in their order; empty for those that suit them, which are then written out, since what suits a stored robot is not known everywhere.
+   * gait of each of `robots`, in order; empty for those that suit them, which are then written out, since what suits a stored robot is not known everywhere.
    */
   gaits: (
     | (
