@@ -28,39 +28,40 @@ _HIDE_NOTHING = (Feature.visible_runs, Feature.why_hidden)
 
 
 class Features:
-    """The features of one app, in an order in which each comes after those that it needs.
+    """Registry of the features of one app, sorted so that each comes after those that it needs.
 
     Attributes:
-        classes: theirs.
-        providers: of identities, of those that know clients.
+        classes: classes of the features, in this order.
+        providers: identity providers of the features that have one.
     """
 
     def __init__(self, catalogue: Catalogue, store: RunStore) -> None:
-        """Bring the tables of the features to this version; `build` makes the features.
+        """Migrate the tables of the features to this version; `build` creates the features.
 
         Args:
-            catalogue: which there are, and which are left out.
-            store: of the runs.
+            catalogue: classes of the installed features, and of those that are left out.
+            store: store of the runs.
 
         Raises:
-            DamagedFile: if a table of one is missing.
-            InvalidInput: if a newer version made its tables, or two have something of one name.
+            DamagedFile: if a table of a feature is missing.
+            InvalidInput: if a newer version made its tables, or two features add something of one
+                name.
         """
         self.classes = catalogue.classes
         _check_names(self.classes)
         self.providers: list[IdentityProvider] = []
         self._features: dict[str, Feature] = {}
         self._hiding: list[Feature] = []
-        """Those that hide runs, which are asked of each event for each client."""
+        """Features that hide runs: asked about each event, for each client."""
         migrate_tables(self.classes, store.database)
         self._left_out = _LeftOut(catalogue.left_out, store)
         keep_named_robots(catalogue, store)
 
     def build(self, core: "Services") -> None:
-        """Make the features of an app.
+        """Create the features of an app, and collect their identity providers.
 
         Raises:
-            InvalidInput: if one of them cannot be made.
+            InvalidInput: if a feature cannot be created.
         """
         for feature in self.classes:
             with blaming(feature, "its start"):
@@ -83,14 +84,14 @@ class Features:
         return {feature.name: feature.page for feature in self.classes if feature.page is not None}
 
     def stage_members(self) -> dict[str, Record]:
-        """Return what each stage keeps for features, by name, as it begins."""
+        """Return the default records that features add to the state of each stage, by name."""
         return {name: kind() for name, kind in stage_members(self.classes).items()}
 
     def owner_of(self, run_id: str) -> Owner | None:
-        """Return who waits for a run; None for an operator.
+        """Return the owner of a run for the queue; None if an operator started it.
 
-        Where a feature fails to say it, the run is the feature's: no other runs wait for that, and
-        the run is not shown to everyone.
+        If `owner_of` of a feature fails, the feature itself is the owner: no other runs wait for
+        that, and the run is not shown to everyone.
         """
         for feature in self:
             try:
@@ -103,10 +104,10 @@ class Features:
         return None
 
     def visible_runs(self, identity: "Identity | None") -> ColumnElement[bool] | None:
-        """Return the condition that a run is one that no feature hides; see `Feature`.
+        """Return the SQL condition that no feature hides a run from a client; None if none does.
 
         Raises:
-            InvalidInput: if a feature fails to say it.
+            InvalidInput: if `visible_runs` of a feature fails.
         """
         conditions = [self._left_out.visible_runs]
         for feature in self._hiding:
@@ -119,7 +120,7 @@ class Features:
         """Return in a sentence why a run is hidden from a client who is no operator; else None.
 
         Raises:
-            InvalidInput: if a feature fails to say it.
+            InvalidInput: if `why_hidden` of a feature fails.
         """
         for feature in self._hiding:
             with blaming(type(feature), "`why_hidden`"):
@@ -133,17 +134,17 @@ class Features:
         return run_id is not None and self.why_hidden(run_id, identity) is not None
 
     async def open(self, stack: AsyncExitStack) -> None:
-        """Enter all features, to be left with the stack.
+        """Enter the contexts of all features; the stack exits them.
 
         Raises:
-            InvalidInput: if one of them fails.
+            InvalidInput: if a feature fails.
         """
         for feature in self:
             with blaming(type(feature), "`open`"):
                 await stack.enter_async_context(feature.open())
 
     def unfinished(self) -> Iterator[str]:
-        """Yield the ids of runs that are to go on, which a crash interrupted."""
+        """Yield the ids of runs that a crash interrupted, and that are to be resumed."""
         for feature in self:
             try:
                 yield from feature.unfinished()
@@ -151,7 +152,7 @@ class Features:
                 _logger.exception("the feature %s cannot say which runs go on", feature.name)
 
     def metrics(self) -> Iterator[Metric]:
-        """Yield the metrics of all features, without those of one that fails."""
+        """Yield the metrics of all features; those of a feature that fails are left out."""
         for feature in self:
             try:
                 yield from feature.metrics()
@@ -160,7 +161,7 @@ class Features:
 
 
 def migrate_tables(classes: Iterable[type[Feature]], database: Database) -> None:
-    """Bring the tables of features to this version.
+    """Migrate the tables of features to this version.
 
     Raises:
         DamagedFile: if a table is missing.
@@ -208,17 +209,17 @@ def keep_named_robots(catalogue: Catalogue, store: RunStore) -> None:
 
 
 class _LeftOut:
-    """Runs that features still hide although they are left out of this server.
+    """Runs that are hidden by features which are left out of this server.
 
     Attributes:
-        visible_runs: the condition that none of them hides a run; None if they hide none.
+        visible_runs: SQL condition that none of these features hides a run; None if they hide none.
     """
 
     def __init__(self, classes: Iterable[type[Feature]], store: RunStore) -> None:
-        """Read which runs are hidden: as long as the features are left out, no more will be.
+        """Read the ids of the hidden runs: while the features are left out, no run is added.
 
         Raises:
-            InvalidInput: if a feature cannot say it, since all that it hides would be shown.
+            InvalidInput: if a feature fails to return them: all that it hides would be shown.
         """
         table_names = set(inspect(store.database.engine).get_table_names())
         conditions: list[ColumnElement[bool]] = []

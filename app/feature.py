@@ -47,21 +47,21 @@ class Feature:
     """Base class of features. One object is made for each app; each member does nothing by default.
 
     Attributes:
-        name: of the feature, in HEXAPODS_WITHOUT and of its folders.
-        needs: names of the features without which it cannot be.
+        name: name of the feature, in HEXAPODS_WITHOUT and of its folders.
+        needs: names of the features that it needs.
         uses: names of features that are made before it, if they are there.
         tables: its tables, which `migrations` creates.
         migrations: folder with its Alembic scripts: a chain of revisions of its own.
-        robot_users: by noun of what names robots in one of its tables, the columns that do. Such a
-            robot is not deleted, also while the feature is left out.
-        damage_advice: by name of its tables, what helps against damaged rows.
+        robot_users: columns of its tables that name robots, by the noun of a row. A robot that is
+            named there is not deleted, also while the feature is left out.
+        damage_advice: advice against damaged rows, by the name of the table.
         state_events: names of its events of which only the newest counts.
         event_bodies: records of the data of its events, by the event's name.
         stage_members: records that each stage keeps for it, by their name in the stage's state:
-            operators set them by `PUT /stage`, who watches is told of them. They begin with their
+            operators set them by `PUT /stage`, `stage` events report them. They begin with their
             defaults.
-        page: of another package the folder with its part of the page: `feature.json` and its
-            modules; that of the others is `static/features/NAME`.
+        page: folder with its part of the page, `feature.json` and modules, if it is of another
+            package; None for `static/features/NAME`.
         option_types: types of what `options` returns, by name: `defaults.NAME` of a default.
         core: the services of the core.
     """
@@ -80,12 +80,12 @@ class Feature:
     page: ClassVar[Path | None] = None
 
     def __init__(self, core: "Services") -> None:
-        """Build its services; those of the core, and the features that it needs, are there."""
+        """Build the feature's services, after those of the core and of features that it needs."""
         self.core = core
 
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:
-        """Return its routes of the API, whose paths are below `/api/v1`.
+        """Return the feature's routes of the API, whose paths are below `/api/v1`.
 
         Args:
             agents: names of the registered agents.
@@ -94,33 +94,33 @@ class Feature:
         return ()
 
     def pages(self) -> Sequence[BaseRoute]:
-        """Return its routes outside of the API."""
+        """Return the feature's routes outside of the API."""
         return ()
 
     def robots_txt(self) -> str | None:
-        """Return what crawlers may read, in place of nothing; None to leave that to others."""
+        """Return the text of `robots.txt`; None for that of another feature, or the default."""
         return None
 
     @classmethod
     def start_kinds(cls, agents: tuple[str, ...]) -> Sequence["StartKind"]:
-        """Return the kinds of runs that it adds and that can be started; see `routers`.
+        """Return the kinds of runs that the feature adds and that can be started; see `routers`.
 
-        How such a run is stored, computed and shown is in its module `run_kind`.
+        Its module `run_kind` has how such a run is stored, computed and shown.
         """
         del agents
         return ()
 
     @classmethod
     def routers_of_start(cls, start: "StartKind") -> Sequence[APIRouter]:
-        """Return its routes of the API about a kind of run that can be started; see `routers`."""
+        """Return the feature's routes about a kind of run that can be started; see `routers`."""
         del start
         return ()
 
     @classmethod
     def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
-        """Return what it adds to `GET /options`.
+        """Return the members that the feature adds to the response of `GET /options`.
 
-        What has the name of an object of the core, such as `limits`, is added to that object.
+        A member with the name of an object of the core, such as `limits`, is merged into it.
 
         Args:
             agents: names of the registered agents.
@@ -134,29 +134,29 @@ class Feature:
 
     @classmethod
     def read_rows(cls, store: RunStore) -> None:
-        """Read all its rows, so that those that are damaged are known."""
+        """Read all rows of the feature, so that damaged ones are found."""
 
     def open(self) -> AbstractAsyncContextManager[None]:
-        """Return what runs with the app: entered after the core's parts, before the first job."""
+        """Return the feature's lifespan context, entered after the core's, before the first job."""
         return nullcontext()
 
     def close(self) -> None:
-        """End what takes long, as the server stops; called before what `open` returned is left."""
+        """End long work as the server stops; called before the context of `open` is exited."""
 
     def owner_of(self, run_id: str) -> Owner | None:
-        """Return who waits for a run; None if it is nobody whom the feature knows."""
+        """Return the owner of a run for the queue; None if no client of the feature started it."""
         del run_id
         return None
 
     def provider(self) -> "IdentityProvider | None":
-        """Return what knows the feature's clients."""
+        """Return the provider of identities of the feature's clients; None if it has no clients."""
         return None
 
     def visible_runs(self, identity: "Identity | None") -> ColumnElement[bool] | None:
-        """Return the condition that a run is one that a client, no operator, may see; None for all.
+        """Return the SQL condition that a client, no operator, may see a run; None for all runs.
 
         Args:
-            identity: of the client; None for a spectator.
+            identity: identity of the client; None for a spectator.
         """
         del identity
         return None
@@ -164,12 +164,12 @@ class Feature:
     def why_hidden(self, run_id: str, identity: "Identity | None") -> str | None:
         """Return in a sentence why a run is hidden from a client; None if it is not.
 
-        It must agree with `visible_runs`, which it asks the database for; a feature that hides runs
-        knows by itself which, as each request about a run and each event asks this.
+        It must agree with `visible_runs`, by which this default queries the database. A feature
+        that hides runs looks them up in memory: each request about a run and each event calls it.
 
         Args:
-            run_id: of the run, or anything else in its place.
-            identity: of a client, no operator; None for a spectator.
+            run_id: id of the run, or any other text in its place.
+            identity: identity of a client, no operator; None for a spectator.
         """
         condition = self.visible_runs(identity)
         is_visible = condition is None or run_id not in hidden_ids(self.core.store, condition)
@@ -177,9 +177,9 @@ class Feature:
 
     @classmethod
     def visible_when_left_out(cls) -> ColumnElement[bool] | None:
-        """Return the condition that a run is not hidden while the feature is left out.
+        """Return the SQL condition that a run is not hidden while the feature is left out.
 
-        Who could see the others is not known then, but for operators. None if it hides no run.
+        Operators alone see the others then. None if the feature hides no run.
         """
         return None
 
@@ -191,26 +191,26 @@ class Feature:
         return None
 
     def adopt(self, run_ids: Sequence[str]) -> None:
-        """Take note that runs with these ids are an operator's now, as they were imported."""
+        """Make an operator the owner of runs with these ids, as they were imported."""
 
     def unfinished(self) -> Iterable[str]:
-        """Return the ids of runs that are to go on, which a crash of the server interrupted."""
+        """Return the ids of runs that a crash interrupted, and that are to be resumed."""
         return ()
 
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> Iterable[str]:
-        """Delete what has not been used since a time, as a server does that keeps nothing for long.
+        """Delete data that was not used since a time, on servers that keep data for a limited time.
 
         Returns:
-            names of what is gone, for `forget`.
+            names of the deleted things, for `forget`.
         """
         del time, delete_runs
         return ()
 
     async def forget(self, names: Iterable[str]) -> None:
-        """Close on the event loop what was open for what `delete_before` has deleted."""
+        """Close, on the event loop, the open resources of what `delete_before` has deleted."""
 
     def metrics(self) -> Iterable[Metric]:
-        """Yield its metrics for Prometheus."""
+        """Yield the feature's metrics for Prometheus."""
         return ()
 
 
@@ -225,8 +225,8 @@ def blaming(feature: type[Feature], what: str) -> Iterator[None]:
     """Name a feature whose code raises an unexpected error, and how to start without it.
 
     Args:
-        feature: whose code runs in this context.
-        what: of the feature fails, in words.
+        feature: the feature whose code runs in this context.
+        what: name of the part of the feature that runs, in words.
 
     Raises:
         InvalidInput: in place of that error.

@@ -1,4 +1,4 @@
-"""Session cookies, of operators and of those whom features know."""
+"""Session cookies of operators, and of clients whom features identify."""
 
 from collections.abc import Iterable, Mapping
 
@@ -21,7 +21,7 @@ _BEGINNINGS = ("hexapods_", "__Host-hexapods_")
 
 
 def kept_cookies(lines: Iterable[str]) -> Mapping[str, str]:
-    """Parse the `Cookie` headers of a request, and return those that may be ours, by name.
+    """Parse the `Cookie` headers of a request; return the cookies with our prefixes, by name.
 
     In linear time: values are taken as they are, without the quotes and escapes of Python's
     `http.cookies`, which no cookie of ours has.
@@ -36,7 +36,7 @@ def kept_cookies(lines: Iterable[str]) -> Mapping[str, str]:
 
 
 def cookies_of(scope: Scope) -> Mapping[str, str]:
-    """Return the cookies of a request that may be ours, by name; inside `DeclaredHeaders`."""
+    """Return the cookies of a request with our prefixes, by name; inside `DeclaredHeaders`."""
     cookies: Mapping[str, str] = scope["state"]["cookies"]
     return cookies
 
@@ -50,18 +50,18 @@ class SessionCookie:
     it, and is for all paths.
 
     Attributes:
-        name: of the cookie.
+        name: name of the cookie.
         value: session id that the client sent; "" without a cookie.
     """
 
     def __init__(self, scope: Scope, is_secure: bool, path: str, name: str = NAME) -> None:
-        """Find it among the cookies of a request.
+        """Read the session cookie of a request.
 
         Args:
-            scope: of the request, or of a websocket.
+            scope: ASGI scope of the request, or of a websocket.
             is_secure: whether browsers use HTTPS.
-            path: of the stage, or of what else has a cookie of its own.
-            name: beginning of its name.
+            path: path of the stage, or of another page with a cookie of its own.
+            name: beginning of the name of the cookie.
         """
         self._is_secure = is_secure
         self.name = f"{name_of_server(scope, is_secure, name)}{path.replace('/', '_')}"
@@ -81,7 +81,7 @@ class SessionCookie:
 
 
 def name_of_server(scope: Scope, is_secure: bool, name: str) -> str:
-    """Return how the names of a server's cookies begin: with the port that the client called."""
+    """Return the prefix of the cookies of a server: it contains the port that the client called."""
     port = Headers(scope=scope).get("host", "").rpartition("]")[2].rpartition(":")[2]
     if not (port.isascii() and port.isdigit()):
         port = "443" if is_secure else "80"

@@ -38,7 +38,7 @@ class PageFiles(NamedTuple):
     """Folders from which the page's files are served.
 
     Attributes:
-        folder: of the dashboard, with its `index.html` and a folder `features`.
+        folder: folder of the dashboard, with its `index.html` and a folder `features`.
         without: names of the features whose folders are left out.
         added: folders of the pages of features of other packages, by the feature's name.
     """
@@ -58,11 +58,11 @@ class Services:
         stages: all stages, the first of which has the path "".
         agents: names of the agents that were registered at server start.
         replays: encodes runs for pages that play them by themselves.
-        stopping: ends what takes long in threads when the server stops.
+        stopping: flag that ends long work in threads when the server stops.
         listeners: slots of event streams, of all stages.
         new_stage: makes a further stage with a path, which uses the sessions of the first.
-        features: those of the server.
-        page_files: where the files of the page are.
+        features: features of the server.
+        page_files: folders of the files of the page.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         downloads: memory budget of files that clients are still reading.
         shared_answers: encoded views of runs, which all pages that watch one request at once.
@@ -121,7 +121,7 @@ class StartRequest(NamedTuple):
     """Idempotency key of the client, which makes a repeated request safe; None if none was sent."""
 
     def with_hashed_key(self) -> "StartRequest":
-        """Return it with a hash in place of its key, for keys that are secrets."""
+        """Return the request with the SHA-256 of its key in place of the key, which is a secret."""
         if self.key is None:
             return self
         return self._replace(key=hashlib.sha256(self.key.encode()).hexdigest())

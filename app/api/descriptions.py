@@ -28,7 +28,7 @@ MAX_CURSOR = 2000
 
 
 def one_of(names: Iterable[str]) -> str:
-    """Return that a value is one of some names."""
+    """Return the words `one of`, followed by the valid names."""
     return f"one of {', '.join(names)}"
 
 
@@ -138,7 +138,7 @@ _OF_LENGTH = {"too_short": ("at least", "min_length"), "too_long": ("at most", "
 
 
 def _length(error: Mapping[str, Any]) -> str | None:
-    """Return how long a list must be; None if its length is not what is wrong."""
+    """Return the valid length of a list, in words; None if the error is not about a length."""
     if error["type"] not in _OF_LENGTH:
         return None
     words, limit = _OF_LENGTH[error["type"]]

@@ -25,12 +25,12 @@ class RouteGuards:
         features: Features,
         handlers: Mapping[Any, Any] | None = None,
     ) -> None:
-        """Create them.
+        """Create the chain of guards around the call of a route.
 
         Args:
-            settings: of the server.
-            slots: of all kinds of work.
-            features: know clients who are no operators, and which runs are hidden.
+            settings: settings of the server.
+            slots: slots for all kinds of work.
+            features: identify clients who are no operators, and hide runs.
             handlers: exception handlers of the app, by exception: what a route raises, such as a
                 404, is answered inside the guards.
         """

@@ -24,22 +24,22 @@ class Identity(Protocol):
         ...
 
     def allowance_key(self, scope: Scope) -> str | None:
-        """Return whose allowance a request is charged to; None to count as its address."""
+        """Return the key of the allowance that a request is charged to; None for its address's."""
         ...
 
     def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
         """Return the refusal of a request; None if it is allowed.
 
         Args:
-            scope: of the request, or of a websocket, with the parameters of its path.
-            access: that of its route.
+            scope: ASGI scope of the request, or of a websocket, with the parameters of its path.
+            access: access of its route.
             as_spectator: refusal that a spectator would get; None if a spectator may do it.
         """
         ...
 
 
 class IdentityProvider(Protocol):
-    """Knows clients who are no operators."""
+    """Identifies clients who are no operators."""
 
     @property
     def scheme(self) -> tuple[str, Mapping[str, Any]]:
@@ -47,24 +47,25 @@ class IdentityProvider(Protocol):
         ...
 
     def identify(self, scope: Scope) -> Identity | None:
-        """Return who a client is; None if it is nobody whom this provider knows.
+        """Return the identity of a client; None if this provider does not know the client.
 
-        Where nobody needs a token each client is asked about, and whoever is known is no operator.
+        On a server without a token it is called for each client; those with an identity are no
+        operators there.
         """
         ...
 
     def requirements(self, access: Access) -> list[dict[str, list[str]]]:
-        """Return by what, beside an operator's credentials, a route of an access can be used.
+        """Return the security requirements of routes of an access, beside those for operators.
 
-        As security requirements of OpenAPI: each names schemes, and an empty one means nothing.
+        As in OpenAPI they are alternatives: each names schemes; an empty one requires nothing.
         """
         ...
 
 
 def charged_client(scope: Scope) -> str:
-    """Return whose allowance a request is charged to: an identity's, or that of an address.
+    """Return the key of the allowance that a request is charged to, of identity or address.
 
-    Many who are known by more than their address may share one.
+    Many clients with identities may share an address.
     """
     identity: Identity | None = scope["state"]["identity"]
     key = None if identity is None else identity.allowance_key(scope)
@@ -72,7 +73,7 @@ def charged_client(scope: Scope) -> str:
 
 
 def run_ids_of(scope: Scope) -> Iterator[str]:
-    """Yield all that may be the id of a run: `run_id` of the path, and all values of the query."""
+    """Yield all possible ids of runs in a request: `run_id` of the path, values of the query."""
     run_id = scope.get("path_params", {}).get("run_id")
     if run_id is not None:
         yield str(run_id)

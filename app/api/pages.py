@@ -42,7 +42,7 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
     """Return the routes of the page at `/`, as it is now, and of its files under `/static/`.
 
     Args:
-        page_files: where they are.
+        page_files: folders of the files.
     """
     index = page_content(_INDEX, page_files)
     left_out = [page_files.folder / "features" / name for name in page_files.without]
@@ -71,7 +71,7 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
 
 
 def page_content(name: str, page_files: PageFiles) -> CompressedContent:
-    """Return a page of the dashboard's folder with its preloads and its policy."""
+    """Return a page of the dashboard's folder, with preloads and a content security policy."""
     folder, features = page_files.folder, page_features(page_files)
     page = with_preloads(
         _with_common_head(name, folder), folder, _start_modules(name, features, page_files)
@@ -84,7 +84,7 @@ def page_content(name: str, page_files: PageFiles) -> CompressedContent:
 
 
 def page_features(page_files: PageFiles) -> list[dict[str, Any]]:
-    """Return what each feature adds to the page, as its `feature.json` declares it."""
+    """Return the declarations of the features' parts of the page, read from `feature.json`."""
     folders = {
         file.parent.name: file.parent
         for file in sorted(page_files.folder.glob("features/*/feature.json"))
@@ -108,7 +108,7 @@ def _start_modules(name: str, features: list[dict[str, Any]], page_files: PageFi
 
 
 def _with_common_head(name: str, folder: Path) -> str:
-    """Return a page's HTML, with what its head has in common with that of the dashboard."""
+    """Return a page's HTML, with the common part of the dashboard's head inserted."""
     page = (folder / name).read_text("utf-8")
     if _COMMON_OF_INDEX not in page:
         return page
@@ -170,7 +170,7 @@ def imported_modules(entry: str, folder: Path) -> list[str]:
 
 @policy(access=WATCH)
 def robots_txt(request: Request) -> Response:
-    """Return what crawlers may read: nothing, unless a feature has something to be found."""
+    """Return `robots.txt`: it forbids crawlers all paths, unless a feature has another text."""
     services: Services = request.app.state.services
     texts = (feature.robots_txt() for feature in services.features)
     text = next(
@@ -184,11 +184,11 @@ def robots_txt(request: Request) -> Response:
 def page_of(
     page: CompressedContent, find: Callable[[Services, Mapping[str, str]], object]
 ) -> Callable[[Request], Response]:
-    """Return the endpoint of a page about something that may not be there.
+    """Return the endpoint of a page, with the status 404 if the subject of the page is not found.
 
     Args:
-        page: the same for all.
-        find: finds it by the parameters of the path; where it raises `NotFound` the status is 404.
+        page: the page, the same for all subjects.
+        find: finds the subject by the parameters of the path, or raises `NotFound`.
     """
 
     def show(request: Request) -> Response:
@@ -198,7 +198,7 @@ def page_of(
         except NotFound as error:
             if not prefers_html(request.headers):
                 return problem(404, as_sentence(str(error)))
-            # The page itself asks again, and tells what came of that.
+            # The page itself requests the subject again, and shows the error.
             response.status_code = 404
         return response
 

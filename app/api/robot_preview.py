@@ -1,6 +1,6 @@
-"""Route of what is known of a robot before it walks.
+"""Route of the preview of a robot: its properties without a simulation.
 
-It is the core's, as it is told of any robot: one that is built in, stored, or in the request.
+It is in the core, as it previews any robot: a built-in one, a stored one, or one in the request.
 """
 
 from typing import Any
@@ -28,11 +28,11 @@ _PreviewBody: Any = create_model(
 )
 @policy(access=QUESTION, work=ANALYSIS)
 def preview_robot(body: _PreviewBody) -> RecordResponse[Preview]:
-    """Return what follows from robot, gait and foot grid; nothing is simulated.
+    """Compute support, reach and speed of a robot from gait and foot grid, without a simulation.
 
-    `margin_m` below 0 means that it tips; `better` then has groups with which it stands. Without
-    slip it advances by `law_m_per_step`: 2 h / (G (1 + Σ w²)), h half the grid's side, G the number
-    of groups, w their shares of the feet.
+    `margin_m` below 0 means that the robot tips over; `better` then has groups with which it
+    stands. Without slip it advances by `law_m_per_step`: 2 h / (G (1 + Σ w²)), h half the grid's
+    side, G the number of groups, w their shares of the feet.
     """
     walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
     return RecordResponse(preview(walk))

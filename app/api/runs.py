@@ -166,7 +166,7 @@ def get_curves(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[Curves
 @router.get("/{run_id}", summary="Get a run of any kind")
 @policy(access=WATCH_RUN, depends_on_state=False)
 def get_any_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[ListedRunView]:
-    """Return a run whose kind is not known."""
+    """Return a run of any kind by its id."""
     return RecordResponse(services.jobs.view(services.store.find(run_id)))
 
 
@@ -175,7 +175,7 @@ def get_any_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[Listed
 def annotate_run(
     services: ServicesDep, run_id: RunPath, body: AnnotationBody
 ) -> RecordResponse[AnyRunView]:
-    """Change them in any state of the run; tags and notes are replaced as a whole."""
+    """Change the name, tags or notes of a run, in any state; each is replaced as a whole."""
     return RecordResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
 
 
@@ -190,9 +190,9 @@ def annotate_run(
 def run_again(
     services: ServicesDep, request: Request, run_id: RunPath, start_request: StartRequestDep
 ) -> Response:
-    """Queue it as the other was started: with its seed and its tables, without what changed live.
+    """Queue a copy of a run, with its seed and tables, without the changes made while it ran.
 
-    It is the same to the last bit, wall times aside.
+    If there were none, the copy has the same result to the last bit, wall times aside.
     """
     return start_run(services, request, start_request, CopyStart(run_id))
 
@@ -209,10 +209,10 @@ def run_routes(
     """Create the routes common to all kinds of runs, for one kind.
 
     Args:
-        kind: of the runs.
+        kind: kind of the runs.
         view: model of a run.
         page: model of a page of runs.
-        changed_by: who may stop and delete its runs.
+        changed_by: access of the routes that stop and delete its runs.
     """
     router = api_router(prefix=f"/{kind}s", tags=[f"{kind}s"])
 

@@ -117,7 +117,7 @@ def get_curve(
 
 
 def _best_known_m(run: Run) -> float | None:
-    """Return the best known distance in a training's world as it is now [m], if it is known."""
+    """Return the best known distance in a training's present world [m]; None if none is known."""
     if not isinstance(run.config, TrainingConfig):
         return None
     step = min(run.done, run.config.steps - 1)

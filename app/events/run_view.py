@@ -1,4 +1,4 @@
-"""Runs as the API, the events and commands tell them."""
+"""Views of runs: their form in responses of the API, in events and in output of commands."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -90,8 +90,8 @@ class RunView(Answer):
     """Members common to all kinds of runs. Times are ISO 8601 in UTC.
 
     Attributes:
-        can_resume: whether its state allows it; what it needs may have been deleted, or a stopped
-            training's table used since.
+        can_resume: whether its state allows `resume`, which is still refused if a run that it needs
+            was deleted, or if a stopped training's table has been used since.
     """
 
     id: str
@@ -153,7 +153,7 @@ class DamagedRunView(Answer):
 
 
 def view_of(run: AnyRun, queue_position: int | None = None) -> RunView | DamagedRunView:
-    """Return a run as it is told; a damaged one with what can be read, and the reason.
+    """Return the view of a run; that of a damaged one has its readable fields and the reason.
 
     Args:
         run: in its present state.
