@@ -29,18 +29,18 @@ _GAIT = "left-right-origin"
 
 
 class CardStarts:
-    """Makes starts of cards, by the request bodies that the page sends elsewhere."""
+    """Builds starts from the forms of cards, as bodies of requests for trainings and races."""
 
     def __init__(self, agents: tuple[str, ...]) -> None:
         """Use the registered agents."""
         self._agents = agents
 
     def given(self, card: Card, settings: Mapping[str, Any]) -> dict[str, Any]:
-        """Check what a participant gives against what the card lets be changed.
+        """Return the settings of a participant, checked against those that the card opens.
 
         Args:
             card: the card.
-            settings: values by name.
+            settings: values that the participant gives, by name.
 
         Raises:
             InvalidInput: if a setting is not open, or its value out of the card's bounds.
@@ -61,28 +61,28 @@ class CardStarts:
 
         Args:
             card: the card.
-            settings: what a participant gives, as it was checked.
-            seed: of the run.
-            name: of the run.
+            settings: settings of a participant, as `given` returns them.
+            seed: seed of the run.
+            name: name of the run.
 
         Raises:
-            InvalidInput: if the form is not valid with what is given.
+            InvalidInput: if the form is not valid with these settings.
         """
         fields = _Fields({**card.form, **settings})
         body = fields.race(seed) if card.go == "race" else {**fields.training(), "seed": seed}
         return self._read("race" if card.go == "race" else "training", {**body, "name": name})
 
     def what_if(self, card: Card, settings: Mapping[str, Any]) -> TrainingConfig:
-        """Return the settings of a card that asks a what-if; errors as `start`."""
+        """Return the config of the training of a what-if card; errors as `start`."""
         start = self._read("training", _Fields({**card.form, **settings}).training())
         assert isinstance(start, TrainingStart)  # noqa: S101 - by the body
         return start.config
 
     def check(self, lesson: Lesson, store: RunStore) -> None:
-        """Check that what the cards of a lesson run can be started.
+        """Check that the runs and what-ifs of the cards of a lesson can be started.
 
         Raises:
-            InvalidInput: naming the card, if it cannot.
+            InvalidInput: naming the card, if one cannot.
         """
         for number, card in enumerate(lesson.cards):
             if card.go is None:
@@ -116,7 +116,7 @@ def _reader(agents: tuple[str, ...], kind: str) -> Callable[[Any], Any]:
 
 
 class _Fields:
-    """Fields of a form by where a request body has them."""
+    """Fields of a form, sorted by the part of a request body that has them."""
 
     def __init__(self, form: Mapping[str, Any]) -> None:
         """Sort the fields; the settings of an agent may be in `settings`, or by themselves.
@@ -190,7 +190,7 @@ class _Fields:
 
 
 def _value(text: Any, setting: Any) -> Any:
-    """Return a value of a form, which a page has as it was typed."""
+    """Parse the value of a field of a form, which may be text as it was typed."""
     if not isinstance(text, str):
         return text
     if setting is not None:

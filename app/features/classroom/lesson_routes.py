@@ -73,8 +73,8 @@ def add_lesson(
 ) -> RecordResponse[NewLesson]:
     """Store the lesson; the same content has the same id, on every server.
 
-    What its cards run must be possible to start, and what they open be within the setting's own
-    bounds. Texts are Markdown without HTML, pictures and scripts.
+    The runs of its cards must be possible to start; the bounds of settings that they open must be
+    within the settings' own. Texts are Markdown without HTML, pictures and scripts.
     """
     services.of(CardStarts).check(lesson, services.store)
     stored = services.of(Lessons).add(lesson)
@@ -117,8 +117,8 @@ def get_lesson(
 ) -> RecordResponse[LessonView] | Response:
     """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server.
 
-    While an open room teaches it, it is for operators alone whole: for others it has neither what
-    is revealed nor the cards after the one that the room shows.
+    While an open room teaches the lesson, operators alone get all of it: for others it has neither
+    the revealed parts nor the cards after the one that the room shows.
     """
     stored, is_taught = services.of(Lessons).get(lesson_id), False
     if reader is not None:
@@ -130,7 +130,7 @@ def get_lesson(
 
 
 def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson, bool]:
-    """Return what all may read of a lesson, and whether that is not all of it."""
+    """Return the part of a lesson that all may read, and whether an open room teaches it."""
     shown = services.of(Rooms).taught(stored.lesson)
     if shown is None:
         return stored, False
@@ -141,7 +141,7 @@ def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson,
 @router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
 @policy(access=OPERATOR)
 def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
-    """Delete it; rooms that have it keep it."""
+    """Delete a stored lesson; rooms that teach it keep their copy."""
     services.of(Lessons).delete(lesson_id)
 
 

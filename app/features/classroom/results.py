@@ -1,4 +1,4 @@
-"""The results of a room: by card what was predicted, what came of it, and how both compare."""
+"""Results of a room: by card the predictions, the outcomes of the runs, and their scores."""
 
 import csv
 import io
@@ -34,13 +34,13 @@ class RunOutcome(Answer):
     """A participant's run on a card.
 
     Attributes:
-        id: of the run; of a what-if that of its record.
-        given: settings that they gave, by name.
-        distance_m: how far the robot walked; of a race the learner, at time-out; of a what-if the
-            interquartile mean with the chosen settings.
+        id: id of the run, or of the record of a what-if.
+        given: settings that the participant gave, by name.
+        distance_m: distance that the robot walked; of a race that of the learner at time-out; of a
+            what-if the interquartile mean with the chosen settings.
         winners: agents of the lanes that won a race.
-        rank: among the seeds, 1 for the longest distance; null before the reveal.
-        answer: of one's own what-if.
+        rank: rank among the seeds, 1 for the longest distance; null before the reveal.
+        answer: answer of the reader's own what-if; null for other runs.
     """
 
     id: str
@@ -57,8 +57,8 @@ class ResultEntry(Answer):
     """A participant's part of a card's results.
 
     Attributes:
-        name: null where it is not to be seen.
-        score: of the prediction; for participants after the reveal.
+        name: name of the participant; null where it is hidden from the reader.
+        score: score of the prediction; participants get it after the reveal.
     """
 
     seed: Count
@@ -78,14 +78,14 @@ class IntervalView(Answer):
 
 
 class CardResultsView(Answer):
-    """The results of a card, as who asks may see them.
+    """The results of a card, as far as the reader may see them.
 
     Attributes:
         participants, predicted, finished: number of participants, of those who have answered, and
             of those whose run has finished.
-        entries: before the reveal a participant's own alone.
-        distances_m: of all seeds, shortest first; empty before the reveal but for a teacher.
-        answer: what the lesson gives as the answer.
+        entries: entries of the participants; before the reveal a participant gets their own alone.
+        distances_m: distances of all seeds, shortest first; before the reveal for a teacher alone.
+        answer: answer that the lesson gives; null before the reveal, but for a teacher.
     """
 
     card: Count
@@ -109,7 +109,7 @@ class ResultsView(Answer):
 
 
 class _Run(NamedTuple):
-    """The newest run, or what-if, of a participant on a card, with all that came of it."""
+    """The newest run, or what-if, of a participant on a card, with its outcome."""
 
     shown: RunOutcome
     outcome: WalkOutcome
@@ -119,9 +119,9 @@ class Reader(NamedTuple):
     """A reader of results.
 
     Attributes:
-        seed: of the participant who reads; None for others.
-        is_teacher: whether what is not revealed is seen.
-        is_projector: whether the class reads along, so that only those who are approved are seen.
+        seed: seed of the participant who reads; None for others.
+        is_teacher: whether the reader sees the results of cards that are not revealed.
+        is_projector: whether the class reads along, so that only approved participants are seen.
     """
 
     seed: int | None
@@ -141,7 +141,7 @@ def results_of(room: Room, store: RunStore, cards: Sequence[int], reader: Reader
 
     Args:
         room: the room.
-        store: of its runs.
+        store: store of its runs.
         cards: numbers of the cards.
         reader: the reader.
     """
@@ -228,9 +228,9 @@ def _interval(distances_m: Sequence[float]) -> IntervalView:
 
 
 def _newest(room: Room, store: RunStore, seed: int, card: int) -> _Run | None:
-    """Return what a participant started last on a card, of what is still there.
+    """Return the newest finished run or what-if of a participant on a card, else the newest.
 
-    One that has finished goes before one that has not.
+    Deleted runs are skipped.
     """
     newest: _Run | None = None
     for room_run in room.runs_of(seed, card):

@@ -1,4 +1,4 @@
-"""A room: a class that goes through a lesson together, and what its participants may do."""
+"""A room: a class that goes through a lesson together, with checks of participants' actions."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -25,9 +25,9 @@ class RoomState(Answer):
         card: number of the card that is shown, from 0.
         cards: number of the lesson's cards.
         revealed: numbers of the cards that are revealed.
-        participants: number of those who are in it.
-        predicted: number of those who have answered the card that is shown.
-        started: number of those who have started a run on it.
+        participants: number of participants who are in the room.
+        predicted: number of participants who have answered the card that is shown.
+        started: number of participants who have started a run on it.
         spotlight: id of the run on its stage.
     """
 
@@ -55,21 +55,21 @@ class Room:
     """A room, as it is in the database.
 
     Attributes:
-        code: by which one joins it.
-        lesson_id: of the lesson that was chosen; None for none.
-        lesson: what is taught.
+        code: code by which participants join.
+        lesson_id: id of the lesson that was chosen; None for none.
+        lesson: the lesson that is taught.
         card: number of the card that is shown, from 0.
         revealed: numbers of the cards that are revealed.
         is_frozen: whether nothing can be answered or started.
         needs_approval: whether others see of a participant only what was approved.
         spotlight: id of the run on the room's stage; None for none.
-        created_at, ended_at: in UTC; it is open while `ended_at` is None.
-        participants: by seed, those too who left and had answered or started something.
-        predictions: by seed and card.
-        runs: by id, oldest first.
-        next_seed: of the next participant; no seed is given twice.
-        used_at: when something was last done in it, as far as that is known, in UTC.
-        finished: of runs that have finished, what came of them, by id; it is filled as it is asked.
+        created_at, ended_at: times in UTC; the room is open while `ended_at` is None.
+        participants: participants by seed, with those who left after an answer or a start.
+        predictions: answers by seed and card.
+        runs: runs and what-ifs by id, oldest first.
+        next_seed: seed of the next participant; no seed is given twice.
+        used_at: time of the last action in the room, as far as it is known, in UTC.
+        finished: cache of the outcomes of finished runs, by id; `results` fills it.
     """
 
     code: str
@@ -91,7 +91,7 @@ class Room:
 
     @property
     def is_open(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the room has not ended."""
         return self.ended_at is None
 
     @property
@@ -111,14 +111,14 @@ class Room:
 
     @property
     def phase(self) -> Phase:
-        """Whether it is open, frozen or ended."""
+        """Phase of the room: open, frozen or ended."""
         if not self.is_open:
             return "ended"
         return "frozen" if self.is_frozen else "open"
 
     @property
     def state(self) -> RoomEvent:
-        """State that all in the room may know."""
+        """Data of the `room` event: the state that all in the room may know."""
         runs = list(self.runs.values())
         started = {run.seed for run in runs if run.is_main and run.card == self.card}
         return RoomEvent(
@@ -156,7 +156,7 @@ class Room:
         return None
 
     def check_open(self) -> None:
-        """Check that it has not ended.
+        """Check that the room has not ended.
 
         Raises:
             Conflict: if it has.
@@ -167,7 +167,7 @@ class Room:
             )
 
     def check_going_on(self) -> None:
-        """Check that it has neither ended nor is frozen.
+        """Check that the room has neither ended nor is frozen.
 
         Raises:
             Conflict: if it is either.
@@ -212,7 +212,7 @@ class Room:
         return self.participants[seed]
 
     def runs_of(self, seed: int, card: int) -> list[RoomRun]:
-        """Return what a participant started on a card, oldest first."""
+        """Return the runs and what-ifs that a participant started on a card, oldest first."""
         return [
             run
             for run in list(self.runs.values())
@@ -224,7 +224,7 @@ class Room:
         return card <= self.card or card in self.revealed
 
     def shows(self, seed: int, card: int) -> bool:
-        """Whether others see what a participant answered and ran on a card."""
+        """Whether others see the answer and the runs of a participant on a card."""
         return card in self.revealed and self.participants[seed].is_approved
 
     def name_for_others(self, seed: int) -> str | None:
@@ -236,5 +236,5 @@ class Room:
 
 
 def given_key(given: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return settings that were given as what is equal where they are."""
+    """Return a hashable key of settings: equal settings have equal keys."""
     return tuple(sorted((name, repr(value)) for name, value in given.items()))

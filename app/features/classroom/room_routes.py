@@ -67,7 +67,7 @@ from hexapods.domain.text import MAX_NAME, check_name
 CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
 SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
 MIN_JOIN_KEY = 16
-"""Characters of the Idempotency-Key of a request to join, which is a secret."""
+"""Minimum length of the Idempotency-Key of a request to join, which is a secret."""
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
 
 router = api_router(prefix="/rooms", tags=["rooms"])
@@ -77,7 +77,7 @@ def _seat(services: ServicesDep, code: CodePath, reader: ReaderDep) -> int:
     """Return the seed of the participant who asks, in the room of the path.
 
     Raises:
-        Forbidden: if it is none of this room.
+        Forbidden: if the client is no participant of this room.
     """
     room = services.of(Rooms).get(code)
     seed = dict(reader or ()).get(room.code)
@@ -155,7 +155,7 @@ def list_rooms(
 def get_room(
     services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
 ) -> RecordResponse[RoomView]:
-    """Return what a client may see of a room: the teacher, a participant, or anyone else."""
+    """Return a room as the client may see it: as a teacher, a participant or anyone else."""
     room = services.of(Rooms).get(code)
     return RecordResponse(room_view(request, services, room, dict(reader or ()).get(room.code)))
 
@@ -201,7 +201,7 @@ def join_room(
 def leave_room(
     services: ServicesDep, request: Request, code: CodePath, seed: SeatDep, response: Response
 ) -> None:
-    """Leave; answers and runs stay in the results."""
+    """Leave the room; answers and runs stay in the results."""
     services.of(Rooms).leave(code, seed)
     cookie = _cookie(services, request, code)
     response.headers.append("Set-Cookie", cookie.expire_header())
@@ -220,7 +220,7 @@ def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
 def change_participant(
     services: ServicesDep, request: Request, code: CodePath, seed: SeedPath, body: ParticipantBody
 ) -> RecordResponse[RoomView]:
-    """Change what others see of a participant."""
+    """Hide or show the name of a participant, or approve their name, answers and runs."""
     room = services.of(Rooms).change_participant(code, seed, **dict(body))
     return RecordResponse(room_view(request, services, room, None))
 
@@ -246,7 +246,7 @@ def remove_participant(
 def show_card(
     services: ServicesDep, request: Request, code: CodePath, body: CardBody
 ) -> RecordResponse[RoomView]:
-    """Show a card to all, and lock what it does not open."""
+    """Show a card to all; participants can change the settings that it opens, and no others."""
     room = services.of(Rooms).show_card(code, body.card)
     return RecordResponse(room_view(request, services, room, None))
 
@@ -256,7 +256,7 @@ def show_card(
 def freeze_room(
     services: ServicesDep, request: Request, code: CodePath, body: FreezeBody | None = None
 ) -> RecordResponse[RoomView]:
-    """Let nothing be answered or started; with `frozen` false let it be again."""
+    """Forbid answers and starts in the room; with `frozen` false permit them again."""
     room = services.of(Rooms).freeze(code, (body or FreezeBody()).frozen)
     return RecordResponse(room_view(request, services, room, None))
 
@@ -322,7 +322,7 @@ def put_spotlight(
 def predict(
     services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody
 ) -> RecordResponse[PredictionView]:
-    """Keep the answer of the participant who asks; it can be given once, before the reveal."""
+    """Store the answer of the participant who asks; it can be given once, before the reveal."""
     value = services.of(Rooms).predict(code, seed, body.card, body.value)
     return RecordResponse(PredictionView(card=body.card, value=value), 201)
 
@@ -347,9 +347,9 @@ def start_run(
 ) -> Response:
     """Start the training or race of the card with the seed of the participant who asks.
 
-    Only the settings that the card opens may be given, within its bounds. What was started alike is
-    returned again; one run of a participant goes on at a time. A what-if is answered at once, with
-    200, and is kept as a result of the card.
+    Only the settings that the card opens may be given, within its bounds. A run that the
+    participant has started with the same settings is returned again; one goes on at a time. A
+    what-if is answered at once, with 200, and is kept as a result of the card.
     """
     card, settings = (body := body or RunBody()).card, body.settings
     starts, room = services.of(CardStarts), services.of(Rooms).check_run(code, card)
@@ -398,10 +398,10 @@ def get_results(
     ] = False,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> RecordResponse[ResultsView] | Response:
-    """Return by card what was predicted, what came of the runs, and how both compare.
+    """Return by card the predictions, the outcomes of the runs, and the scores of predictions.
 
-    A participant gets their own until the reveal; others get counts alone. But for a teacher, cards
-    that are still to come have no results. CSV has no names.
+    A participant gets their own until the reveal; others get counts alone. Cards that are still to
+    come have results for a teacher alone. CSV has no names.
     """
     room = services.of(Rooms).get(code)
     if card is not None:

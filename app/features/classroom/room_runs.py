@@ -1,4 +1,4 @@
-"""The runs of participants: whose they are, who may see them, and how one is started."""
+"""The runs of participants: their owners, their visibility, and their start."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -28,10 +28,10 @@ class RoomRuns:
     """Runs of all participants by id. Reads from any thread; `Rooms` holds its lock for changes."""
 
     def __init__(self, store: RunStore) -> None:
-        """Create it without a run.
+        """Create an empty table of runs, which `load` fills.
 
         Args:
-            store: of the runs.
+            store: store of the runs.
         """
         self._store, self._rows = store, RoomRows(store.database)
         self._runs: dict[str, RoomRun] = {}
@@ -53,16 +53,16 @@ class RoomRuns:
         self._unread = self._rows.run_ids() - self._runs.keys()
 
     def forget(self, room: Room) -> None:
-        """Leave the runs of a room to all: they are ordinary ones from then on."""
+        """Remove the links of a room's runs to participants: all may see these runs then."""
         self._runs = {k: run for k, run in self._runs.items() if run.room != room.code}
 
     def ids_of(self, room: Room) -> list[str]:
-        """Return the ids of all runs of a room, also of who was removed, the oldest first."""
+        """Return the ids of all runs of a room, also of removed participants, oldest first."""
         runs = [run for run in list(self._runs.values()) if run.room == room.code]
         return [run.run_id for run in runs if run.answer is None]
 
     def remove(self, room: Room, seed: int) -> list[str]:
-        """Leave the runs of a participant out of the room, and return the ids of those that go on.
+        """Remove the runs of a participant from the room; return the ids of those that go on.
 
         They stay hidden from all but operators, but for those that were shown before. Races are
         before their trainings.
@@ -74,7 +74,7 @@ class RoomRuns:
         return [run.id for run in stored if run is not None and run.state in NOT_ENDED]
 
     def owner_of(self, run_id: str) -> str | None:
-        """Return the participant who waits for a run, as a text; None if there is none."""
+        """Return code and seed of the participant who started a run, as text; None without one."""
         run = self._runs.get(run_id)
         return None if run is None else f"{run.room} {run.seed}"
 
@@ -96,7 +96,7 @@ class RoomRuns:
             self._runs[run.run_id] = room.runs[run.run_id] = run._replace(is_shown=True)
 
     def interrupted(self, room: Room) -> list[str]:
-        """Return the ids of the runs of a room that were asked for, and are interrupted."""
+        """Return the ids of interrupted runs of a room, without trainings that its races need."""
         mains = [main for main in room.runs.values() if main.is_main]
         stored = [(main.run_id, self._find(main)) for main in mains]
         return [run_id for run_id, run in stored if run is not None and run.state == "interrupted"]
@@ -131,10 +131,10 @@ class RoomRuns:
     def answer_of(
         self, room: Room, seed: int, card: int, given: Mapping[str, Any]
     ) -> ComparisonView | None:
-        """Return what the same what-if of a participant gave; None if it was not asked yet.
+        """Return the stored answer of an equal what-if of a participant; None if there is none.
 
         Raises:
-            Busy: if it was not, and too much was started on the card.
+            Busy: if there is none, and the participant has started too much on the card.
         """
         for alike in _alike(room, seed, card, given):
             if alike.answer is not None:
@@ -152,7 +152,7 @@ class RoomRuns:
         answer: ComparisonView,
         now: datetime,
     ) -> None:
-        """Keep what a what-if of a participant gave; others see it as they would see a run."""
+        """Store the answer of a participant's what-if; others see it as they would see a run."""
         number = len(room.runs_of(seed, card))
         row = RoomRun(
             run_id=f"what-if-{room.code}-{seed}-{card}-{number}",
@@ -168,7 +168,7 @@ class RoomRuns:
         self._keep(room, [row])
 
     def _link(self, room: Room, seed: int, given: Mapping[str, Any], runs: Sequence[Run]) -> None:
-        """Note whose runs these are before they are stored; a link to none has no effect."""
+        """Link runs to their participant before they are stored; a link to no run has no effect."""
         is_shown = room.shows(seed, room.card)
         links = [
             RoomRun(
@@ -215,7 +215,7 @@ class RoomRuns:
 
 
 def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
-    """Return a stored run, or what-if.
+    """Check a stored run, or what-if, and return it decoded.
 
     Raises:
         ValueError, NotFound: if the row is damaged.
@@ -234,7 +234,7 @@ def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
 
 
 def _alike(room: Room, seed: int, card: int, given: Mapping[str, Any]) -> list[RoomRun]:
-    """Return what a participant started on a card with the same settings."""
+    """Return the runs and what-ifs of a participant on a card with the same settings."""
     key = given_key(given)
     return [run for run in room.runs_of(seed, card) if given_key(run.given) == key]
 

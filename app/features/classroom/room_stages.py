@@ -16,11 +16,11 @@ class RoomStages:
     def __init__(
         self, stages: MutableSequence[SharedStage], make: Callable[[str], SharedStage]
     ) -> None:
-        """Create it without a stage of a room.
+        """Begin with no stage of a room; `open` adds one.
 
         Args:
-            stages: all stages of the server, of which those of rooms become a part.
-            make: makes a stage with a path.
+            stages: all stages of the server, to which the stages of rooms are added.
+            make: creates a stage with a path.
         """
         self._stages, self._make = stages, make
         self._lock = asyncio.Lock()
@@ -38,7 +38,7 @@ class RoomStages:
             self._stages.append(shared)
 
     def publish(self, room: Room) -> None:
-        """Tell those who follow the stage of a room that it has changed; from any thread."""
+        """Publish a `room` event on the stage of a room that has changed; from any thread."""
         shared = self.of(room.code)
         if shared is not None:
             shared.channel.publish("room", room.state)

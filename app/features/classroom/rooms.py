@@ -61,13 +61,13 @@ class Rooms:
         """Load the rooms.
 
         Args:
-            store: where they are, and their runs.
+            store: store of the runs, in whose database the rooms are.
             choose: draws codes and names.
             now: the clock, with time zone.
             on_changed: called with each room that has changed.
 
         Raises:
-            StorageFailed: if they cannot be read.
+            StorageFailed: if the rooms cannot be read.
         """
         self._store, self._rows = store, RoomRows(store.database)
         self._choose, self._now = choose, now
@@ -175,14 +175,14 @@ class Rooms:
         return room
 
     def idle_rooms(self) -> list[Room]:
-        """Return the open rooms in which nothing has happened for long."""
+        """Return the open rooms in which nothing has happened for longer than `IDLE`."""
         with self._lock:
             since = self._now() - IDLE
             # When a card was shown is not stored: after a restart a room may have been used before.
             return [r for r in self.open_rooms() if max(r.used_at, self._started_at) < since]
 
     def last_used_before(self, time: datetime) -> list[str]:
-        """Return the codes of the rooms in which nothing has happened since."""
+        """Return the codes of the rooms in which nothing has happened since a time."""
         return [room.code for room in self.all() if room.used_at <= time]
 
     def runs_in(self, code: str) -> list[str]:
@@ -190,12 +190,12 @@ class Rooms:
         return self._runs.ids_of(self.get(code))[::-1]
 
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> list[str]:
-        """Delete the rooms in which nothing has happened since, with their runs.
+        """Delete the rooms in which nothing has happened since a time, with their runs.
 
-        One whose runs cannot all be deleted stays until the next time.
+        A room whose runs cannot all be deleted stays until the next call.
 
         Returns:
-            their codes.
+            codes of the deleted rooms.
         """
         gone = []
         for code in self.last_used_before(time):
@@ -211,7 +211,7 @@ class Rooms:
         return gone
 
     def forget(self, code: str) -> None:
-        """End a room, and delete all that is known of it but its runs.
+        """End a room, and delete it with participants and answers; its runs stay.
 
         Raises:
             NotFound: if there is no such room.
@@ -233,7 +233,7 @@ class Rooms:
         return self._change(code, lambda room: room.check_card(number), card=number)
 
     def freeze(self, code: str, is_frozen: bool) -> Room:
-        """Let nothing be answered or started, or let it be again; errors as `show_card`."""
+        """Forbid answers and starts in a room, or permit them again; errors as `show_card`."""
         return self._change(code, is_frozen=is_frozen)
 
     def reveal(self, code: str, number: int) -> Room:
@@ -257,7 +257,7 @@ class Rooms:
         return room
 
     def spotlight(self, code: str, run_id: str | None) -> Room:
-        """Note the run on the room's stage, which others see from then on.
+        """Store which run is on the room's stage; all participants may see it from then on.
 
         Raises:
             NotFound: if it is no run of the room.
@@ -361,7 +361,7 @@ class Rooms:
     def delete(self, code: str) -> None:
         """Delete a room that has ended, with its participants, answers and what-ifs.
 
-        Its runs stay, and are nobody's: all may see them. Errors as `ended`.
+        Its runs stay without an owner: all may see them. Errors as `ended`.
         """
         with self._lock:
             self.ended(code)
@@ -381,18 +381,18 @@ class Rooms:
         return room
 
     def _changed(self, room: Room) -> None:
-        """Note that something was done in a room, and tell of it."""
+        """Update the time at which a room was used last, and call `on_changed`."""
         room.used_at = self._now()
         self.on_changed(room)
 
     # ---- of participants
 
     def join(self, code: str, key: str = "", request_key: str | None = None) -> Joined:
-        """Join a room; who was in it before, by the key, has the same name and seed again.
+        """Add a participant to a room; one who was in it before keeps name and seed by the key.
 
         Args:
-            code: of the room.
-            key: of who was in it before; "" for none.
+            code: code of the room.
+            key: key of a participant who was in it before; "" for none.
             request_key: idempotency key of the request, a secret: with it the same request, of
                 which the answer was lost, finds the participant of the first again.
 
@@ -452,12 +452,12 @@ class Rooms:
         self._changed(room)
 
     def seat(self, code: str, key: str) -> ParticipantRow | None:
-        """Return the participant of a room by the key of the cookie; None if it is none's."""
+        """Return the participant of a room by the key of the cookie; None if none has it."""
         room = self._rooms.get(code)
         return None if room is None else self._seats.of(room, key)
 
     def predict(self, code: str, seed: int, card: int, value: Any) -> Any:
-        """Keep a participant's answer to the question of the card that is shown.
+        """Store a participant's answer to the question of the card that is shown.
 
         Raises:
             NotFound: if there is no such card.
@@ -488,7 +488,7 @@ class Rooms:
         """Return the room, if the card that is shown lets its participants start a run.
 
         Args:
-            code: of the room.
+            code: code of the room.
             card: number of the card that is meant; None for the one that is shown.
 
         Raises:
@@ -512,11 +512,11 @@ class Rooms:
         *,
         card: int | None = None,
     ) -> Run:
-        """Start what the card that is shown runs; what was started alike is returned again.
+        """Start the run of the card that is shown; return a participant's equal run again.
 
         Args:
-            code: of the room.
-            seed: of the participant.
+            code: code of the room.
+            seed: seed of the participant.
             given: settings that the participant gave, by name, as they were checked.
             make: makes the start.
             queue: queues it.
@@ -543,11 +543,11 @@ class Rooms:
         *,
         card: int,
     ) -> ComparisonView:
-        """Return what the what-if of the card that is shown gives, and keep it; see `start`.
+        """Compute and store the answer of the what-if of the card that is shown; see `start`.
 
         Args:
-            code: of the room.
-            seed: of the participant.
+            code: code of the room.
+            seed: seed of the participant.
             given: settings that the participant gave, by name, as they were checked.
             compute: computes the answer, which may take seconds; it is called without a lock.
             card: number of the card.
@@ -572,17 +572,18 @@ class Rooms:
         self._changed(room)
         return answer
 
-    # ---- who sees what
+    # ---- visibility of lessons and runs
 
     def taught(self, lesson: Lesson) -> int | None:
         """Return the number of the card up to which all may read a lesson that open rooms teach.
 
-        None if none teaches it, whatever its id there. What is revealed is for nobody meanwhile.
+        None if none teaches it; lessons are compared by their content. Operators alone may read
+        the revealed parts meanwhile.
         """
         return min((room.card for room in self.open_rooms() if room.lesson == lesson), default=None)
 
     def owner_of(self, run_id: str) -> str | None:
-        """Return who waits for a run, as a text; None if it is no participant of a room."""
+        """Return code and seed of the participant who started a run, as text; None without one."""
         return self._runs.owner_of(run_id)
 
     def is_hidden(self, run_id: str | None, reader: Iterable[Seat]) -> bool:
@@ -595,7 +596,7 @@ class Rooms:
         return self._runs.is_hidden(run_id, reader)
 
     def unfinished(self) -> list[str]:
-        """Return the ids of interrupted runs of open rooms, which were asked for."""
+        """Return the ids of interrupted runs of open rooms, without trainings that races need."""
         with self._lock:
             return [run_id for room in self.open_rooms() for run_id in self._runs.interrupted(room)]
 

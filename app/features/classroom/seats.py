@@ -1,4 +1,4 @@
-"""The seats of rooms: which participant a key is, as a cookie holds it."""
+"""The seats of rooms: participants by the secret key in their cookie."""
 
 import hashlib
 import secrets
@@ -13,11 +13,11 @@ from app.storage.errors import Busy
 from hexapods.domain.text import check_name
 
 MAX_PARTICIPANTS = 64
-"""In a room, without those who have left."""
+"""Maximum number of participants in a room, without those who have left."""
 MAX_SEED = 1_000_000
-"""Above the seed of any participant."""
+"""Upper limit of seeds: all participants have smaller ones."""
 MAX_KEPT = 1000
-"""With those who have left after they had answered or started something."""
+"""Maximum number with those who have left after they had answered or started something."""
 _RETRY_S = 60
 
 
@@ -25,8 +25,8 @@ class Joined(NamedTuple):
     """A participant who has joined.
 
     Attributes:
-        participant: with name and seed.
-        key: what the cookie holds.
+        participant: row of the participant, with name and seed.
+        key: secret key of the participant, for the cookie.
         is_new: whether the participant was not in the room before.
     """
 
@@ -39,7 +39,7 @@ class Seats:
     """Participants of all rooms by the hash of their key. `Rooms` holds its lock for changes."""
 
     def __init__(self) -> None:
-        """Create it without a participant."""
+        """Create an empty table of seats."""
         self._seats: dict[str, Seat] = {}
 
     def add(self, room: Room, row: ParticipantRow) -> None:
@@ -54,7 +54,7 @@ class Seats:
             self._seats.pop(participant.key_sha256, None)
 
     def remove(self, room: Room, seed: int) -> None:
-        """Take the seat of a participant, of whom nothing is left in the room but runs."""
+        """Remove the seat and the answers of a participant; runs stay."""
         del self._seats[room.participants.pop(seed).key_sha256]
         room.predictions = {k: v for k, v in room.predictions.items() if k[0] != seed}
 
@@ -63,7 +63,7 @@ class Seats:
         return _sha256(key) in self._seats
 
     def of(self, room: Room, key: str) -> ParticipantRow | None:
-        """Return the participant of a room who has a key; None if none has, or has left."""
+        """Return the participant of a room by a key; None without one, or if they have left."""
         seat = self._seats.get(_sha256(key)) if key else None
         if seat is None or seat[0] != room.code:
             return None
@@ -72,10 +72,10 @@ class Seats:
 
 
 def free_seat(room: Room, is_in_use: Callable[[int], bool]) -> int | None:
-    """Return the seed of who gives the seat to somebody else; None if nobody does, or need not.
+    """Return the seed of the participant whose seat goes to a newcomer; None if no seat does.
 
-    It is who joined first of those who have done nothing, and whose page is not open: one person
-    can take any number of seats, but not keep them. Who has just joined is the last.
+    It is the first one who has done nothing and whose page is not open: one person can take any
+    number of seats, but not keep them. The newest participant comes last.
 
     Args:
         room: the room.
@@ -94,7 +94,7 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
         room: the room; it is not changed.
         choose: draws the name.
         now: when the participant joins.
-        key: of the participant.
+        key: key of the participant.
 
     Raises:
         Busy: if the room is full.
@@ -117,13 +117,13 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
 
 
 def reserve_seed(room: Room, seed: int) -> None:
-    """Give the seed of a stored row to no newcomer; the row may be damaged."""
+    """Reserve the seed of a stored row, so that no newcomer gets it; the row may be damaged."""
     if 0 <= seed < MAX_SEED:
         room.next_seed = max(room.next_seed, seed + 1)
 
 
 def sound_participant(row: ParticipantRow) -> ParticipantRow:
-    """Return a stored participant.
+    """Check a stored participant, and return it.
 
     Raises:
         ValueError: if the row is damaged.
@@ -140,7 +140,7 @@ def new_key() -> str:
 
 
 def key_of(code: str, request_key: str) -> str:
-    """Return the key that a request to join a room gets, by its idempotency key, a secret."""
+    """Derive the key of a participant from the idempotency key of the request to join a room."""
     return _sha256(f"{code} {request_key}")
 
 

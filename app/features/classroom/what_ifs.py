@@ -1,4 +1,4 @@
-"""What-ifs of cards, as far as that feature is there."""
+"""What-ifs of cards, answered by the what-if feature, if it is not left out."""
 
 from typing import ClassVar, Protocol, cast
 
@@ -10,7 +10,7 @@ from hexapods.runs.config import TrainingConfig
 
 
 class _WhatIfFeature(Protocol):
-    """What cards need of the feature: importing its class would make it a part of this one."""
+    """Interface of the what-if feature: importing its class would make it a part of this one."""
 
     work: ClassVar[Work]
 
@@ -21,7 +21,7 @@ class WhatIfs:
     """Answers what-ifs of participants."""
 
     def __init__(self, feature: Feature | None) -> None:
-        """Create it with the feature of what-ifs; None if it is left out."""
+        """Use the what-if feature; None if it is left out."""
         self._feature = cast("_WhatIfFeature | None", feature)
 
     @property
@@ -33,8 +33,8 @@ class WhatIfs:
         """Return the answer to a what-if.
 
         Args:
-            training: what is compared with its defaults.
-            client: who is charged for the time that it takes.
+            training: config that is compared with its defaults.
+            client: client that is charged for the computing time.
 
         Raises:
             NotFound: if the feature is left out.
