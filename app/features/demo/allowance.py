@@ -1,4 +1,4 @@
-"""Limits of what a visitor of a demo may start, and the sentences that tell of them."""
+"""Limits on the starts of a visitor of a demo, and the errors with which starts are refused."""
 
 import math
 from collections.abc import Sequence
@@ -20,13 +20,14 @@ class Allowance:
 
     Attributes:
         steps_per_hour: steps that a visitor may compute in any hour; of a race of all its lanes.
-        hours: after how many hours what was made is deleted.
+        hours: hours after which a visitor's runs are deleted.
         steps_per_start: steps of one start, with all the practice that a race needs.
-        least_steps: a start counts as so many at least, which bounds how many there are.
+        least_steps: minimum number of steps that a start counts as, which bounds their number.
         unended: starts of a visitor that wait or go on at once.
         kept: runs of a visitor that are kept at once, trainings and races.
-        seconds_per_run: for so long a run computes at most; then it is stopped [s].
-        visitors_per_address: so many visitors' steps and starts one address has, as of a class.
+        seconds_per_run: longest computing time of a run, after which it is stopped [s].
+        visitors_per_address: number of visitors whose steps and starts one address has, as of a
+            class.
     """
 
     steps_per_hour: int = DemoSettings.demo_steps_per_hour
@@ -45,7 +46,7 @@ class Allowance:
 
     @property
     def lifetime(self) -> timedelta:
-        """Time after which what was made is deleted."""
+        """Time after which a visitor's runs are deleted."""
         return timedelta(hours=self.hours)
 
     @property
@@ -59,18 +60,18 @@ class Allowance:
         return self.visitors_per_address * self.unended
 
     def cost(self, runs: Sequence[Run]) -> int:
-        """Return how many steps a start counts as."""
+        """Return the number of steps that a start is charged: at least `least_steps`."""
         return max(self.least_steps, sum(run.total for run in runs))
 
     def check_start(self, runs: Sequence[Run]) -> None:
-        """Check a start by itself, whoever asks for it.
+        """Check kinds and steps of the runs of a start, whatever the visitor has used.
 
         Args:
-            runs: that it makes.
+            runs: runs of the start.
 
         Raises:
-            Forbidden: if it is none of a training or a race.
-            InvalidInput: if it has too many steps.
+            Forbidden: if a run is neither a training nor a race.
+            InvalidInput: if they have too many steps.
         """
         if refused_kinds := [run.kind for run in runs if run.kind not in WALKS]:
             raise Forbidden(
@@ -85,11 +86,11 @@ class Allowance:
             )
 
     def check_unended(self, count: int, of_address: int) -> None:
-        """Check that another start may wait beside so many.
+        """Check that another start may wait, by the number of unended starts.
 
         Args:
-            count: of the visitor.
-            of_address: of all visitors of the address.
+            count: unended starts of the visitor.
+            of_address: unended starts of all visitors of the address.
 
         Raises:
             Busy: if it may not.
@@ -113,7 +114,7 @@ class Allowance:
         Args:
             count: runs that are kept.
             added: runs of the start.
-            first_ends_in_s: when the oldest of them is deleted [s].
+            first_ends_in_s: time until the oldest of them is deleted [s].
 
         Raises:
             Busy: if they may not.
@@ -129,9 +130,9 @@ class Allowance:
         """Return the refusal of a start that costs more steps than a visitor has left.
 
         Args:
-            cost: of the start.
+            cost: steps that the start is charged.
             left: steps that are left.
-            wait_s: after which there are enough.
+            wait_s: time until enough are left [s].
         """
         return Busy(
             f"you have {left:,} of {self.steps_per_hour:,} steps an hour left, and this takes "
@@ -140,7 +141,7 @@ class Allowance:
         )
 
     def address_used_up(self, wait_s: float) -> Busy:
-        """Return the refusal of a start where all visitors of an address have used up theirs."""
+        """Return the refusal of a start if the visitors of an address have used up its steps."""
         return Busy(
             f"the visitors of your network have started {self.steps_per_hour_of_address:,} steps "
             f"within an hour, which is the most; start this {in_words(wait_s)}",

@@ -1,4 +1,4 @@
-"""Clean-up of a demo: stops visitors' runs that take too long, deletes what was made a day ago."""
+"""Clean-up of a demo: stops visitors' runs that take too long, and deletes runs of a day ago."""
 
 import logging
 import time
@@ -26,7 +26,7 @@ class Cleaner(Protocol):
     """Deletes its own data once they are old, as a feature does."""
 
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> Iterable[str]:
-        """Delete what has not been used since a time; see `Feature.delete_before`."""
+        """Delete data that was not used since a time; see `Feature.delete_before`."""
 
 
 class Expiry:
@@ -46,13 +46,13 @@ class Expiry:
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
         now_s: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Clean up what is of these.
+        """Use the services whose data are cleaned up.
 
         Args:
             store: store of the runs.
             jobs: stops and deletes runs.
-            visitors: whose runs are whose, and for how long.
-            cleaners: delete what does not outlive a day either, beside the runs.
+            visitors: the visitors, with their runs and their allowance.
+            cleaners: delete other data that are kept for as long.
             now: the clock, with time zone.
             now_s: monotonic clock [s].
         """
@@ -62,9 +62,9 @@ class Expiry:
         self._running_since_s: dict[str, float] = {}
 
     def sweep(self) -> list[list[str]]:
-        """Clean up once, and return for each of the others the names of what is gone.
+        """Clean up once; return for each cleaner the names of the things that it has deleted.
 
-        What fails is logged, and tried again by the next one.
+        Failures are logged; the next sweep tries again.
         """
         before = self._now() - self._visitors.allowance.lifetime
         old = self._visitors.made_before(before)
@@ -82,7 +82,7 @@ class Expiry:
 
         Raises:
             NotFound: if there is no such visitor.
-            Conflict: if a run is kept, as one of others waits for it.
+            Conflict: if a run is kept, as a run of another visitor waits for it.
         """
         runs = sorted(self._visitors.runs_of(visitor_id), key=lambda run: run.is_main, reverse=True)
         left = [run.run_id for run in runs]
@@ -117,7 +117,7 @@ class Expiry:
         return gone
 
     def _deleted_of(self, other: Cleaner, before: datetime) -> list[str]:
-        """Return the names of what one of the others has deleted; none if it fails."""
+        """Return the names of the things that a cleaner has deleted; none if it fails."""
         try:
             return list(other.delete_before(before, self._deleted))
         except Exception:  # runs of visitors are to be stopped all the same

@@ -1,4 +1,4 @@
-"""Rows of the `visitor_runs` table: runs of strangers who visit a demo."""
+"""Rows of the `visitor_runs` table: runs of the visitors of a demo."""
 
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -14,7 +14,7 @@ from app.storage.database.stored_rows import read_rows
 from app.storage.run import STATES, State
 
 UNREADABLE = "unreadable"
-"""Visitor of the runs of which that cannot be read; no key has such a hash."""
+"""Visitor of runs whose visitor cannot be read; no key has such a hash."""
 
 
 _HASH = re.compile("[0-9a-f]{64}")
@@ -26,9 +26,9 @@ class VisitorRun(NamedTuple):
     Attributes:
         run_id: id of the run, which may have been deleted.
         visitor: SHA-256 of the key in the visitor's cookie, hexadecimal.
-        steps: how many it was to compute; of a race summed over its lanes.
-        is_main: whether it is what was started, not a training that it needs.
-        created_at: in UTC.
+        steps: number of steps to compute; of a race summed over its lanes.
+        is_main: whether the visitor started this run itself, not one that needs it.
+        created_at: time of the start, in UTC.
     """
 
     run_id: str
@@ -44,7 +44,7 @@ _IF_DAMAGED = {
     "is_main": False,
     "created_at": datetime(1970, 1, 1, tzinfo=UTC),
 }
-"""In place of what cannot be read of a row. A run whose age is not known has lived long enough."""
+"""Values in place of unreadable ones. A run of unknown age counts as old enough to be deleted."""
 
 
 class VisitorRows:
@@ -54,7 +54,7 @@ class VisitorRows:
         self._database = database
 
     def all(self) -> list[VisitorRun]:
-        """Return all, sound ones oldest first; what cannot be read of one is as in `_IF_DAMAGED`.
+        """Return all runs, sound ones oldest first; unreadable values are as in `_IF_DAMAGED`.
 
         So each run is deleted in time: one that is left out here would stay for ever.
         """
@@ -71,8 +71,8 @@ class VisitorRows:
         """Return the states of the runs that are kept, by id.
 
         Args:
-            states: of runs in these alone.
-            visitor: of this visitor alone; None for all.
+            states: only of runs in these states.
+            visitor: only of runs of this visitor; None for all.
         """
         query = select(RUNS.c.id, RUNS.c.state).join(
             VISITOR_RUNS, VISITOR_RUNS.c.run_id == RUNS.c.id
@@ -91,14 +91,14 @@ class VisitorRows:
         self._database.write(lambda connection: connection.execute(statement, values))
 
     def give(self, run_ids: Collection[str], visitor: str) -> None:
-        """Make runs those of another visitor, all or none."""
+        """Assign runs to another visitor, all or none."""
         statement = (
             update(VISITOR_RUNS).where(VISITOR_RUNS.c.run_id.in_(run_ids)).values(visitor=visitor)
         )
         self._database.write(lambda connection: connection.execute(statement))
 
     def remove(self, run_ids: Collection[str]) -> None:
-        """Delete the links of runs."""
+        """Delete the rows of runs; the runs themselves stay."""
         statement = delete(VISITOR_RUNS).where(VISITOR_RUNS.c.run_id.in_(run_ids))
         self._database.write(lambda connection: connection.execute(statement))
 
@@ -110,6 +110,6 @@ def _run(**values: Any) -> VisitorRun:
 
 
 def _checked(values: dict[str, Any]) -> dict[str, Any]:
-    """Return what can be read without a visitor that is none."""
+    """Return the values of a row; without `visitor`, if that is no SHA-256."""
     is_hash = _HASH.fullmatch(values.get("visitor", ""))
     return {name: value for name, value in values.items() if is_hash or name != "visitor"}

@@ -1,4 +1,4 @@
-"""The visitors of a demo: lets them start runs within their allowance, and knows theirs.
+"""The visitors of a demo: starts runs within their allowance, and stores the runs' visitors.
 
 All is written to the database before it counts. Addresses are in memory alone.
 """
@@ -27,7 +27,7 @@ from hexapods.runs.race_config import RaceConfig
 ID_LENGTH = 12
 """Letters of the hash by which operators call a visitor."""
 MIN_SECRET = 16
-"""Characters of an idempotency key from which on it is a secret, which can prove whose a run is."""
+"""Minimum length of an idempotency key that counts as a secret, which proves who owns a run."""
 _MAX_CLOCK_LEAD = timedelta(days=1)
 """A run made later than so long from now has a damaged time, or the clock was set back."""
 
@@ -36,10 +36,10 @@ class Use(NamedTuple):
     """Steps and runs that a visitor has used of the allowance.
 
     Attributes:
-        steps: counted within the last hour.
+        steps: steps of the starts within the last hour.
         unended: starts that wait or go on.
         kept: ids of the runs that are kept, oldest first.
-        oldest: when the oldest of them was made; None without one.
+        oldest: time at which the oldest of them was made; None without one.
     """
 
     steps: int = 0
@@ -65,15 +65,15 @@ class Visitors:
         *,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        """Load whose runs are whose.
+        """Load the runs of all visitors.
 
         Args:
-            store: where that is, and the runs.
-            allowance: what each may start.
+            store: store of the runs, in whose database the visitors are.
+            allowance: limits of each visitor.
             now: the clock, with time zone.
 
         Raises:
-            StorageFailed: if it cannot be read.
+            StorageFailed: if they cannot be read.
         """
         self.allowance = allowance
         self.is_hidden: Callable[[str | None], bool] = lambda run_id: False  # noqa: ARG005
@@ -85,20 +85,20 @@ class Visitors:
         for run in self._rows.all():
             self._add(run)
         self._addresses: dict[str, str] = {}
-        """By visitor, since the server started."""
+        """Newest address of each visitor since the server started."""
         per_hour = allowance.steps_per_hour_of_address
         self._of_address = RateLimiter(
             per_hour, per_hour / HOUR.total_seconds(), lambda: now().timestamp()
         )
 
-    # ---- whose is what
+    # ---- owners of runs
 
     def is_known(self, key: str) -> bool:
-        """Whether a key is a visitor's, of whom something is kept or counted."""
+        """Whether a key is that of a visitor with runs that are kept or counted."""
         return bool(key) and _sha256(key) in self._by_visitor
 
     def owner_of(self, run_id: str) -> Owner | None:
-        """Return who waits for a run; None if it is no visitor."""
+        """Return the visitor who started a run, as its owner in the queue; None if none did."""
         run = self._runs.get(run_id)
         if run is None:
             return None
@@ -133,13 +133,13 @@ class Visitors:
 
     @property
     def count(self) -> int:
-        """Number of visitors of whom something is kept or counted."""
+        """Number of visitors with runs that are kept or counted."""
         return len(self._by_visitor)
 
     # ---- starting
 
     def use(self, key: str) -> Use:
-        """Return what a visitor has used; nothing if it is not known."""
+        """Return the steps and runs that a visitor has used; none if no visitor has the key."""
         return self._use(_sha256(key)) if self.is_known(key) else Use()
 
     def start(
@@ -156,8 +156,8 @@ class Visitors:
         could show to be the visitor whose first answer was lost, and with it the cookie.
 
         Args:
-            key: of the cookie; "" without one.
-            address: from which it is asked for, which is not stored.
+            key: key of the cookie; "" without one.
+            address: address of the client, which is not stored.
             start: makes the runs.
             queue: queues them.
             request_key: idempotency key of the request; None without one.
@@ -213,7 +213,7 @@ class Visitors:
         return key
 
     def _link(self, visitor: str, address: str, runs: Sequence[Run]) -> None:
-        """Check the allowance, and note whose these runs are before they are stored."""
+        """Check the allowance, and store the visitor of runs before the runs are stored."""
         allowance, used, now = self.allowance, self._use(visitor), self._now()
         allowance.check_start(runs)
         if any(map(self.is_hidden, _used_by(runs))):
@@ -259,7 +259,7 @@ class Visitors:
         )
 
     def _unended_at(self, address: str) -> int:
-        """Return how many starts of all visitors of an address wait or go on."""
+        """Return the number of unended starts of all visitors of an address."""
         unended = (
             self._runs[run_id] for run_id in self._rows.states(NOT_ENDED) if run_id in self._runs
         )
@@ -283,7 +283,7 @@ class Visitors:
     # ---- afterwards
 
     def unfinished(self) -> list[str]:
-        """Return the ids of runs that were asked for, and that a crash has interrupted."""
+        """Return the ids of interrupted runs, without trainings that races need."""
         interrupted = self._rows.states(INTERRUPTED)
         return [
             run.run_id
@@ -307,7 +307,7 @@ class Visitors:
         return sorted(expired, key=lambda run: (run.created_at, run.is_main), reverse=True)
 
     def forget(self, run_ids: Collection[str]) -> None:
-        """Forget whose runs these are, and visitors of whom nothing else is known."""
+        """Delete the rows of runs, and forget visitors without any other run."""
         with self._lock:
             if not run_ids:
                 return
@@ -331,7 +331,7 @@ class Visitors:
 
 
 def _used_by(runs: Sequence[Run]) -> Iterator[str | None]:
-    """Yield the ids of all runs on which some rest."""
+    """Yield the ids of the trainings and races from which runs continue or branch off."""
     for run in runs:
         yield from (run.continued_from, *run.lane_training_ids)
         if isinstance(run.config, RaceConfig) and run.config.branch_from is not None:

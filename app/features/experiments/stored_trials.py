@@ -28,7 +28,7 @@ def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -
     """Encode trials as CSV, with one row per distance.
 
     Args:
-        config: of the experiment.
+        config: config of the experiment.
         rows: as returned by `Trials.get`.
     """
     progress = Progress(config)
@@ -38,7 +38,7 @@ def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -
 
 
 def wall_s_of(summary: bytes | None, run_id: str) -> float:
-    """Return how long an experiment has run by its newest summary [s]; 0 if it has none.
+    """Return the wall time of an experiment from its newest summary [s]; 0 without a summary.
 
     Raises:
         DamagedFile: if the summary is damaged.

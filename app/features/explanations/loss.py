@@ -1,4 +1,4 @@
-"""Why a learner with a table loses a race: what it had tried, and what it walked past.
+"""Why a learner with a table loses a race: its tried entries, and better moves it did not make.
 
 In each state of its walk all moves are simulated, one step ahead. The answer tells how much of its
 table the learner had tried, what the best moves there would have brought, and why it passed them.
@@ -44,8 +44,8 @@ class WalkedLane:
     """The recorded walk of a lane; can be pickled.
 
     Attributes:
-        config: the race.
-        number: of the lane, from 0 on.
+        config: config of the race.
+        number: number of the lane, from 0 on.
         walked: observation and move of each step.
     """
 
@@ -58,10 +58,10 @@ class Tried(NamedTuple):
     """Counts of the entries of a learner's table that it had tried before its last step.
 
     Attributes:
-        tried, entries: values of its table, and those of moves or landings that were tried.
+        tried, entries: number of tried entries of its table, and of all.
         kind: whether the values are of moves or of landings.
         states: number of different states in which it stood in the race.
-        tried_there, moves_there: moves of these states, and those that were tried.
+        tried_there, moves_there: number of tried moves in these states, and of all.
     """
 
     tried: int
@@ -86,16 +86,16 @@ class Deficit(NamedTuple):
 
 @runtime_checkable
 class ValuedTable(Tabular, Valuing, Protocol):
-    """Learner with a table that tells its values and visits."""
+    """Learner with a table, whose values and visits can be read."""
 
 
 def standing_of(
     run: Run, lanes: Sequence[LaneRecording], lane: int, steps: int, clock: Clock
 ) -> Deficit:
-    """Return by how much a lane is behind, and whom: at time-out, or before by its steps so far.
+    """Return the deficit of a lane to the first one: at time-out, or before by its steps so far.
 
     Raises:
-        Conflict: if it is not behind.
+        Conflict: if the lane is not behind.
     """
     figures = lane_figures(lanes, steps, clock)
     ranked = [figure.finished_distance_m for figure in figures]
@@ -162,7 +162,7 @@ def passed_over(agent: Valuing, move: ComparedMove) -> PassedOver | None:
 
 
 def count_tried(agent: ValuedTable, walked: Iterable[Cells]) -> Tried:
-    """Count how much of its table a learner has tried.
+    """Count the tried entries of a learner's table: of all, and in the states of a race.
 
     Args:
         agent: the learner.
@@ -184,7 +184,7 @@ def count_tried(agent: ValuedTable, walked: Iterable[Cells]) -> Tried:
 
 
 def _count_tried_moves(agent: Valuing, cells: Cells) -> tuple[int, int]:
-    """Return how many moves of a state were tried, and how many there are."""
+    """Return the number of tried moves in a state, and of all legal ones."""
     legal = np.isfinite(agent.values(cells))
     return int(np.count_nonzero(agent.visits(cells)[legal])), int(legal.sum())
 
@@ -198,7 +198,7 @@ def loss_view(
     """Return why a lane lost, in numbers and in three sentences.
 
     Args:
-        standing: of the lane.
+        standing: deficit of the lane.
         compared: each step of the lane beside the best move there.
         learner_before: returns the learner as it was before a step, counted from 0; called in
             order.

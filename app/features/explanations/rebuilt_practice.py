@@ -12,11 +12,11 @@ from hexapods.runs.rebuilding import ExplainedStep, LearnerSnapshot, NotRebuilt,
 from hexapods.runs.transition_log import Logged
 
 SNAPSHOT_EVERY_S = 0.04
-"""Work after which a snapshot is taken: that long it takes at most to step back."""
+"""Computing time after which a snapshot is taken [s]; going a step back takes at most as long."""
 MAX_SNAPSHOT_BYTES = 32_000_000
 """Limit on the memory of all snapshots of a walk; beyond it every second one is dropped."""
 WORK_S = 1.5
-"""Work for one request [s]; one that needs more is told to ask again, and goes on from there."""
+"""Computing time for one request [s]; if it needs more, it is refused, and the next goes on."""
 Changes = Sequence[Mapping[str, Any]]
 
 
@@ -24,7 +24,7 @@ class LoggedSteps(Protocol):
     """Steps of a walk, from its start."""
 
     def __len__(self) -> int:
-        """Return their number so far."""
+        """Return the number of steps so far."""
 
     def step(self, number: int) -> Logged:
         """Return the step of an index, from 0 on."""
@@ -37,7 +37,7 @@ class RebuiltPractice:
     """
 
     def __init__(self, new: Callable[[], RebuiltLearner]) -> None:
-        """Start before the first step.
+        """Create the learner as it was before the first step.
 
         Args:
             new: makes the learner as it was before the first step.
@@ -48,7 +48,7 @@ class RebuiltPractice:
         self._spacing_s, self._worked_s = SNAPSHOT_EVERY_S, 0.0
 
     def fits(self, steps: LoggedSteps, changes: Changes) -> bool:
-        """Whether it has taken only steps of its walk as this is now.
+        """Whether the learner has taken no other steps and changes than the walk has now.
 
         A training that resumes may have forgotten steps, and changes of settings may follow.
         """
@@ -127,7 +127,7 @@ class RebuiltPractice:
 
     @contextmanager
     def _starting_anew_if_broken(self, step: int) -> Iterator[None]:
-        """Take a new learner where a step fails: half of the step may be done."""
+        """Replace the learner by a new one if a step fails: half of the step may be done."""
         try:
             yield
         except Exception as error:  # a user-supplied agent may raise anything
@@ -140,7 +140,7 @@ class RebuiltPractice:
             ) from error
 
     def _tune(self) -> None:
-        """Make the changes that were made after the steps so far."""
+        """Apply the changes of settings that were made after the steps so far."""
         learner = self._learner
         while learner.tuned < len(self._changes):
             change = self._changes[learner.tuned]

@@ -77,7 +77,7 @@ def explain_loss(
     lane: Annotated[int, Query(description="from 0 on")],
     clock: Annotated[Clock, Query(description="by which the lanes are ranked")] = "paper",
 ) -> Response:
-    """Tell how much of its table it had tried, and which better moves it walked past, and why.
+    """Return how much of its table the learner had tried, and why it made no better moves.
 
     In each state of its walk every move is simulated, one step ahead. A lane that is not behind, or
     has no table, is refused.

@@ -48,7 +48,7 @@ from hexapods.runs.records import LaneStep
 from hexapods.runs.transition_log import Logged, TransitionLog
 
 MAX_PRACTICES = 4
-"""Walks that are kept; the one asked for least recently is dropped."""
+"""Capacity of the cache of rebuilt walks; the least recently used one is dropped."""
 MAX_ANSWER_BYTES = 16_000_000
 """Limit on the memory of all answers in the cache."""
 MAX_WAITING = 8
@@ -117,7 +117,7 @@ class Explanations:
 
         Args:
             run_id: id of a training.
-            step: after so many steps; None for the newest.
+            step: number of steps after which they are returned; None for the newest.
             first: index of the first state.
             count: number of states.
 
@@ -218,7 +218,7 @@ class Explanations:
         return lanes[lane]
 
     def _answer(self, key: Hashable, answer: Callable[[], Record]) -> bytes:
-        """Return the answer that is kept, as JSON, or a new one."""
+        """Return the cached answer of a key as JSON, or compute it and cache it."""
         cached = self._answers.get(key)
         if cached is not None:
             return cached
@@ -267,7 +267,7 @@ class Explanations:
         return log
 
     def _practice(self, run: Run, config: TrainingConfig, steps: LoggedSteps) -> RebuiltPractice:
-        """Return the learner of a training."""
+        """Return the cached walk of a training, with its learner, or a new one."""
 
         def new() -> RebuiltLearner:
             table = (
@@ -307,7 +307,7 @@ class Explanations:
         changes: Changes,
         make: Callable[[], RebuiltPractice],
     ) -> RebuiltPractice:
-        """Return a practice that is kept, or a new one if it is not or does not fit any more."""
+        """Return the cached walk of a key, or a new one if there is none or it does not fit."""
         practice = self._practices.get(key)
         if practice is None or not practice.fits(steps, changes):
             self._practices[key] = practice = make()
@@ -358,7 +358,7 @@ class LoggedLane:
 
 
 def _version(run: Run, step: int, steps: LoggedSteps) -> Hashable:
-    """Return all that the learner after a step depends on, but for its number and the lane.
+    """Return a key of all that the learner after a step depends on, without step and lane.
 
     A run repeats its steps where it resumes, unless its agent has another source of randomness;
     changes of settings may be others then. Not the log itself, which is large, and another object
@@ -370,7 +370,7 @@ def _version(run: Run, step: int, steps: LoggedSteps) -> Hashable:
 
 
 def _search_of(agent: str, step: LaneStep) -> SearchFindings | None:
-    """Return what the search of a lane found; None if it does not search, or was not recorded."""
+    """Return the findings of a lane's search in a step; None if no search was recorded."""
     if not any(future.action == step.action for future in step.futures):
         return None
     return SearchFindings(registry.compares(agent), step.transitions, step.futures)

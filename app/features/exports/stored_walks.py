@@ -18,7 +18,7 @@ EncodeReplay = Callable[[str, Clock], EncodedReplay]
 
 
 def source_of(run: AnyRun, recordings: Recordings, encode: EncodeReplay) -> ExportSource:
-    """Return a run as exports read it.
+    """Return the source of an export of a run: its name, walks and frames.
 
     Raises:
         InvalidInput, Damaged, Conflict: see `recorded_walks`.
@@ -32,11 +32,11 @@ def source_of(run: AnyRun, recordings: Recordings, encode: EncodeReplay) -> Expo
 
 
 def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
-    """Return what is recorded of a race or training that has ended.
+    """Return the recorded walks of a race or training that has ended.
 
     Raises:
         InvalidInput: if the run is neither.
-        Damaged: if it cannot be read.
+        Damaged: if the run cannot be decoded.
         Conflict: if it has not ended, or has no recording.
     """
     if isinstance(run, DamagedRun):

@@ -49,9 +49,9 @@ class GaitLane(Record):
     """A robot's walk; `figures` are null if nothing of it lies in the window.
 
     Attributes:
-        agent: its agent.
-        recorded_from_s, recorded_to_s: robot time of what is recorded.
-        figures: of the window.
+        agent: name of its agent.
+        recorded_from_s, recorded_to_s: robot time at the beginning and at the end of the recording.
+        figures: figures of the gait within the window.
         no_effort: why there are neither torque nor energy, in a sentence.
     """
 
@@ -67,9 +67,9 @@ class GaitAnalysis(Record):
     """Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
 
     Attributes:
-        part: of the run.
+        part: part of the run that is analysed.
         step_s: duration of a step.
-        lanes: of a race all, of a training one.
+        lanes: all lanes of a race, or the one of a training.
     """
 
     part: Part
@@ -94,10 +94,10 @@ def get_gait(
     ] = None,
     part: Annotated[TrainingPart, Query(description=VALID["part"])] = "practice",
 ) -> Response:
-    """Analyse what is recorded of a race or training, also while it runs.
+    """Analyse the recorded walk of a race or training, also while it runs.
 
     Times are robot time: the motion of all steps, without the time that decisions take. By default
-    all of a race, and the newest of a practice.
+    the window is all of a race, and the newest part of a practice.
     """
     run = services.store.find(run_id)
     if isinstance(run, DamagedRun):
@@ -116,13 +116,13 @@ def get_gait(
 
 
 class _Walks(NamedTuple):
-    """Walks of a run that are analysed: one of each agent."""
+    """Recorded walks of a run that are analysed: one of each agent."""
 
     part: Part
     agents: Sequence[str]
     walks: Sequence[RecordedWalk]
     step: int = 0
-    """The step of practice after which an evaluation was."""
+    """Number of steps of practice before an evaluation."""
 
 
 def _walks(services: Services, run: Run, part: TrainingPart, from_s: float | None) -> _Walks:
@@ -172,7 +172,7 @@ def _lane(agent: str, walk: RecordedWalk, from_s: float, to_s: float) -> GaitLan
 
 
 def _no_effort(walk: RecordedWalk) -> str:
-    """Return why torque and work of a walk are not known."""
+    """Return in a sentence why a walk has neither torque nor energy."""
     if walk.problem.simulator == "kinematic":
         return "The ideal simulator has no servos, so there are neither torque nor energy."
     if isinstance(walk.problem, TrainingConfig):

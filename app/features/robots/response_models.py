@@ -21,8 +21,8 @@ class StoredLeg(Answer):
     """A leg of a stored robot.
 
     Attributes:
-        leg: its number, from 1.
-        azimuth_deg: where it is on the torso, anticlockwise from body x.
+        leg: number of the leg, from 1.
+        azimuth_deg: direction of its place on the torso, anticlockwise from body x.
         joints: names of its joints, from the torso to the foot.
     """
 
@@ -36,8 +36,8 @@ class StoredRobotView(RobotFields):
     """A stored robot.
 
     Attributes:
-        id: of its content: the same robot has the same id on every server.
-        gait: one that suits it.
+        id: id of its content: the same robot has the same id on every server.
+        gait: gait that suits the robot.
         groups: legs of each group of this gait.
     """
 
@@ -53,12 +53,12 @@ class StoredRobotsView(Answer):
 
 
 class FoundView(Answer):
-    """Findings in the file of a robot, from which a person may choose otherwise.
+    """Findings in the file of a robot, which a person may correct.
 
     Attributes:
-        file: path in the zip of what was read; null if it was given alone.
+        file: path in the zip of the file that was read; null if it was not in a zip.
         legs: leg by leg: the names of the joints and of the foot in the file.
-        feet: names in the file of all that could be the foot of a leg.
+        feet: names in the file of all parts that could be the foot of a leg.
         keyframes: names of the file's keyframes.
         forward_deg: direction in which it walks, anticlockwise from x of its torso in the file.
         reaches_grid: whether its feet reach a foot grid that suits its size.
@@ -75,13 +75,13 @@ class FoundView(Answer):
 
 @dataclass(frozen=True, kw_only=True)
 class WholeRobotView(StoredRobotView):
-    """A stored robot with all its numbers, and what is known of it before it walks.
+    """A stored robot with all its numbers, and a preview of its walk.
 
-    That is a preview with its gait, on a foot grid that suits its size.
+    The preview is with its gait, on a foot grid that suits its size.
 
     Attributes:
-        found: what was found in its file; null if it was made here.
-        robot: by value, as a request may have it.
+        found: findings in its file; null if it was made here.
+        robot: the robot by value, as a request may have it.
     """
 
     robot: dict[str, Any]
@@ -112,7 +112,7 @@ def robot_view(stored: StoredRobot) -> StoredRobotView:
 
 
 def whole_view(stored: StoredRobot, origin: RobotOrigin | None) -> WholeRobotView:
-    """Return a stored robot with all that is known of it; errors as of `robot_view`."""
+    """Return a stored robot with its numbers, preview and findings; errors as of `robot_view`."""
     robot = stored.robot
     gait = own_gait(robot)
     walk = WalkingProblem(gait=gait, robot=robot, grid_side_m=usual_grid_side_m(robot, gait))

@@ -52,7 +52,7 @@ class RobotBody(Body):
 
 
 class RobotChangeBody(PatchBody):
-    """Changes to what is said of a stored robot."""
+    """Changes of the name, visibility, gait or import choices of a stored robot."""
 
     model_config = ConfigDict(json_schema_extra=one_given(("name", "hidden", "gait", "choices")))
 
@@ -62,7 +62,7 @@ class RobotChangeBody(PatchBody):
     choices: Choices | None = None
 
     def changes(self) -> dict[str, Any]:
-        """Return the given fields."""
+        """Return the fields that the request has, by name."""
         values = {name: getattr(self, name) for name in type(self).model_fields}
         return {name: value for name, value in values.items() if value is not None}
 
@@ -91,8 +91,8 @@ def store_robot(
 ) -> RecordResponse[StoredRobotView]:
     """Store a body, `{"robot": …}`, the document of a robot, or a robot's file.
 
-    A file is MJCF or URDF, alone or in a zip with its meshes. What was guessed of it and repaired
-    is told; `PATCH /robots/{id}` corrects it. The id is that of its content: the same robot is
+    A file is MJCF or URDF, alone or in a zip with its meshes. The answer tells what was guessed
+    and repaired; `PATCH /robots/{id}` corrects it. The id is that of its content: the same robot is
     stored once, with the name that it was given first, and answered with 200.
     """
     stored, is_new = import_robot(services.store, body, name, file or None)
@@ -115,7 +115,7 @@ def list_robots(
 @router.get("/{robot_id:robot}", summary="Get a stored robot")
 @policy(access=WATCH, work=ANALYSIS, depends_on_state=False)
 def get_robot(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[WholeRobotView]:
-    """Return a stored robot with all its numbers, and what is known of it before it walks."""
+    """Return a stored robot with all its numbers, and a preview of its walk."""
     robots = services.store.robots
     return RecordResponse(whole_view(robots.get(robot_id), robots.origin(robot_id)))
 
@@ -128,10 +128,10 @@ def get_robot(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[Whol
 def change_robot(
     services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody
 ) -> RecordResponse[StoredRobotView]:
-    """Change what is said of a robot, which keeps its id, or how its file is read.
+    """Change the name, visibility or gait of a robot, or the choices by which its file is read.
 
     With `choices` the file is read again: the answer has the new robot's id. The one before is
-    deleted, or hidden where runs use it.
+    deleted, or hidden where runs use it. Without, the robot keeps its id.
     """
     changes, robots = body.changes(), services.store.robots
     choices = changes.pop("choices", None)
@@ -164,6 +164,6 @@ def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
 )
 @policy(access=WATCH, work=ANALYSIS)
 def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
-    """Return its document, which `POST /robots` and `hexapods robots import` store elsewhere."""
+    """Return a robot's document, which `POST /robots` or `hexapods robots import` can store."""
     data = services.store.robots.document(robot_id)
     return attachment(data, "application/json", f"robot-{robot_id}.json")

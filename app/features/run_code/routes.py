@@ -15,9 +15,9 @@ router = api_router(prefix="/runs", tags=["runs"])
 @router.get("/{run_id}/code", summary="Get commands and Python that repeat a run")
 @policy(access=WATCH_RUN, work=ANALYSIS)
 def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> RecordResponse[CodeView]:
-    """Return what makes exactly this run, on the command line and in Python.
+    """Return commands for a shell and a Python program, each of which repeats exactly this run.
 
-    Trainings that it rests on are practised first; a table that no practice repeats is downloaded.
+    Trainings that it uses are practised first; a table that no practice repeats is downloaded.
     """
     run = services.store.get(run_id)
     return RecordResponse(run_code(run, services.store, str(request.base_url)))

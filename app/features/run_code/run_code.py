@@ -51,7 +51,7 @@ class CodeView(Answer):
 
 
 class _Code(NamedTuple):
-    """A name, as Python prints it."""
+    """A Python expression, whose `repr` is without quotes."""
 
     text: str
 
@@ -65,7 +65,7 @@ def run_code(run: Run, store: RunStore, address: str) -> CodeView:
     Args:
         run: the run, in any state; of one that was stopped, the whole run.
         store: store of the trainings that it rests on.
-        address: of this server, with a slash at its end.
+        address: address of this server, with a slash at its end.
     """
     robots = _Robots(address)
     robots.add(robots_of(run.config))
@@ -85,7 +85,7 @@ def run_code(run: Run, store: RunStore, address: str) -> CodeView:
 
 
 class _Robots:
-    """Stored robots that a run needs, which are downloaded and made known first.
+    """Stored robots that a run needs, which are downloaded and imported first.
 
     They are not written out: those from files have meshes.
     """
@@ -95,13 +95,13 @@ class _Robots:
         self._names: dict[str, str] = {}
 
     def add(self, robots: Iterable[Robot]) -> None:
-        """Add those of some robots that are stored."""
+        """Add robots; those that are not stored are left out."""
         for robot in robots:
             if robot.id is not None:
                 self._names[robot.id] = as_mapping(robot)["name"]
 
     def before(self, code: CodeView) -> CodeView:
-        """Return the code with what makes the robots known before it."""
+        """Return the code, preceded by the download and import of the robots."""
         commands, calls = "", ""
         for robot_id, name in self._names.items():
             file, url = f"robot-{robot_id}.json", f"{self._address}api/v1/robots/{robot_id}/file"
@@ -118,7 +118,7 @@ class _Practices:
     """The trainings of a run, in the order in which they are practised.
 
     Attributes:
-        commands, calls: of the command line and of Python.
+        commands, calls: commands of the command line, and calls in Python.
     """
 
     def __init__(self, store: RunStore, address: str) -> None:
@@ -134,7 +134,7 @@ class _Practices:
         return self._configs.values()
 
     def add_id(self, training_id: str) -> None:
-        """Add a training whose table is needed; what cannot be practised again, as a file."""
+        """Add a training whose table is needed; as a file, if it cannot be practised again."""
         run = self._practised(training_id)
         if run is None:
             self._add_file(training_id)
@@ -210,8 +210,8 @@ class _Practices:
         """Return the arguments, but settings, that differ from the defaults.
 
         Args:
-            config: the run's.
-            rests_on: ids of the trainings from which Python takes what is not given.
+            config: config of the run.
+            rests_on: ids of the trainings from which Python takes arguments that are left out.
         """
         practices = [self._configs[training_id] for training_id in rests_on]
         arguments: Arguments = {}
@@ -398,7 +398,7 @@ def _part(value: Any) -> str:
 
 
 def _experiment_differences(config: ExperimentConfig) -> Arguments:
-    """Return what differs from the defaults, of which some depend on simulator and agents."""
+    """Return the arguments that differ from the defaults with this simulator and these agents."""
     name, shown = config.experiment, by_option(to_json(config))
     chosen: Arguments = {"simulator": config.simulator}
     if "agents" in config.preset.fields:
