@@ -44,8 +44,8 @@ class JudgingTask(NamedTuple):
     """Arguments of the judging of one entry on one draw, sent to a process.
 
     Attributes:
-        rules: of the tournament.
-        entry: which they allow.
+        rules: rules of the tournament.
+        entry: entry that is judged.
         draw: seed and world.
         table: file of the table with which it enters; None without one.
     """
@@ -77,10 +77,10 @@ class _Work:
     """State shared by the threads of a judge, guarded by the tournaments' lock.
 
     Attributes:
-        draws: that are being judged, as (tournament, entry, draw).
+        draws: draws that are being judged, as (tournament, entry, draw).
         ranked: ids of tournaments that are being ranked or finished.
-        served: by tournament, when one of its draws was taken last.
-        deaths: by draw, of processes that judged it.
+        served: number of the turn in which a draw of a tournament was taken last, by its id.
+        deaths: number of processes that ended while they judged a draw, by draw.
     """
 
     draws: set[tuple[str, int, int]] = field(default_factory=set)
@@ -90,7 +90,7 @@ class _Work:
 
 
 class Judge:
-    """Judges what waits in tournaments, by threads that each have a process."""
+    """Judges the waiting entries of tournaments, by threads that each have a process."""
 
     def __init__(
         self,
@@ -100,12 +100,12 @@ class Judge:
         *,
         limit_s: float = LIMIT_S,
     ) -> None:
-        """Start nothing yet.
+        """Create the process pools; `start` starts the threads.
 
         Args:
-            tournaments: those of the server.
+            tournaments: tournaments of the server.
             count: number of processes.
-            niceness: of the processes.
+            niceness: niceness of the processes.
             limit_s: processor time for a draw [s].
         """
         self._tournaments, self._limit_s = tournaments, limit_s
@@ -131,7 +131,7 @@ class Judge:
         return [pid for pool in self._pools for pid in pool.pids]
 
     def close(self) -> None:
-        """Stop at once; what is being judged is judged anew after the next start."""
+        """Stop at once; draws that are being judged are judged anew after the next start."""
         self._stopping.set()
         with self._changed:
             self._changed.notify_all()
@@ -150,10 +150,10 @@ class Judge:
                 if not self._stopping.wait(_RETRY_S):
                     _logger.warning("the judge tries again: %s", error)
 
-    # ---- what comes next
+    # ---- scheduling
 
     def _next(self, pool: ProcessPool) -> Callable[[], None] | None:
-        """Wait for something to do, and take it; None once the judge stops."""
+        """Wait for a tournament to rank or a draw to judge; None once the judge stops."""
         with self._changed:
             while not self._stopping.is_set():
                 for tournament in self._tournaments.all():
@@ -188,7 +188,7 @@ class Judge:
                         return draw
         return None
 
-    # ---- doing it
+    # ---- judging and ranking
 
     def _judge(self, pool: ProcessPool, draw: _Draw) -> None:
         try:
@@ -201,7 +201,7 @@ class Judge:
                 self._changed.notify_all()
 
     def _judgement(self, pool: ProcessPool, draw: _Draw) -> Judgement | None:
-        """Return a judgement; None if there is none, as its process ended or nobody waits."""
+        """Return the judgement of a draw; None if its process ended, or its entry waits no more."""
         tournament, entry, _ = draw
         limit = limit_s(tournament.rules, self._limit_s)
         try:
@@ -228,7 +228,7 @@ class Judge:
         return judgement
 
     def _task(self, draw: _Draw) -> JudgingTask:
-        """Return what is judged; raises NotFound or DamagedFile if its table cannot be read."""
+        """Return the arguments for judging a draw; raises NotFound or DamagedFile for its table."""
         tournament, entry, number = draw
         table = None
         if entry.entry.table is not None:
@@ -236,12 +236,12 @@ class Judge:
         return JudgingTask(tournament.rules, entry.entry, tournament.draws[number], table)
 
     def _check(self, draw: _Draw) -> None:
-        """Raise _GivenUp if an entry is not waited for any more."""
+        """Raise _GivenUp if the entry of a draw does not wait any more."""
         if not self._tournaments.is_waiting(draw.tournament.id, draw.entry.number):
             raise _GivenUp
 
     def _rank(self, pool: ProcessPool, tournament: Tournament) -> None:
-        """Rank what is judged; if that is all, and no more is to come, the tournament has ended."""
+        """Rank the judged entries; finish a tournament that is ending once all are judged."""
         try:
             with self._changed:
                 is_last = tournament.state == "ending" and not tournament.waiting
@@ -261,8 +261,8 @@ class Judge:
 def in_turn(tournament: Tournament) -> Sequence[TournamentEntry]:
     """Return the entries of a tournament that wait, the next one first.
 
-    References come first, then what has begun; then the entrant of whom the fewest are judged, and
-    of an entrant the oldest.
+    References come first, then entries with a judgement; then those of the entrant with the fewest
+    judged entries, oldest first.
     """
     judged: dict[Any, int] = {}
     for entry in tournament.judged:
@@ -282,9 +282,9 @@ def limit_s(rules: TournamentRules, usual_s: float) -> float:
     """Return the processor time that a draw may take [s].
 
     Args:
-        rules: of the tournament.
-        usual_s: for up to `DEFAULT_TRANSITIONS`; of more in proportion, or those that the rules
-            allow would fail on the machine of the judge, and not where they are repeated.
+        rules: rules of the tournament.
+        usual_s: time for up to `DEFAULT_TRANSITIONS` [s]; more have a proportional time, or entries
+            that the rules allow would fail on the judge's machine, and not where they are repeated.
     """
     return usual_s * max(1.0, rules.transitions / DEFAULT_TRANSITIONS)
 

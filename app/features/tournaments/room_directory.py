@@ -8,16 +8,16 @@ from app.viewer.shared_stage import SharedStage
 
 
 class RoomDirectory:
-    """Finds rooms, their stages, and whose a run is. Thread-safe."""
+    """Finds rooms, their stages, and the participants who started runs. Thread-safe."""
 
     def __init__(self, classroom: Feature | None) -> None:
-        """Create it with the feature that has the rooms; None if it is left out."""
+        """Use the classroom feature, which has the rooms; None if it is left out."""
         # By its attributes alone: importing its classes would make it a part of this feature.
         self._classroom: Any = classroom
 
     @property
     def is_there(self) -> bool:
-        """Whether it is known which rooms there are."""
+        """Whether the classroom feature, which has the rooms, is not left out."""
         return self._classroom is not None
 
     def get(self, code: str) -> Any:
@@ -31,14 +31,14 @@ class RoomDirectory:
         return self._classroom.rooms.get(code)
 
     def owner_of(self, run_id: str) -> str | None:
-        """Return the code and the seed of the participant who has started a run, by a space."""
+        """Return room code and seed of the participant who started a run, as `CODE SEED`."""
         if self._classroom is None:
             return None
         owner: str | None = self._classroom.rooms.owner_of(run_id)
         return owner
 
     def codes(self) -> list[str] | None:
-        """Return the codes of all rooms; None if it is not known which there are."""
+        """Return the codes of all rooms; None without the classroom feature."""
         return None if self._classroom is None else list(self._classroom.rooms.codes())
 
     def stage_of(self, code: str) -> SharedStage | None:

@@ -79,7 +79,7 @@ def open_tournament(
 @router.get("", summary="List the tournaments that who asks may know")
 @policy(access=ANY_PAGE)
 def list_tournaments(services: ServicesDep, reader: ReaderDep) -> RecordResponse[TournamentList]:
-    """Return all to operators; to others those without a room, and those of their rooms."""
+    """Return all tournaments to operators; to others those without a room or of their rooms."""
     codes = {None, *dict(reader or ())}
     items = [
         ListedTournament(
@@ -101,7 +101,7 @@ def list_tournaments(services: ServicesDep, reader: ReaderDep) -> RecordResponse
 def get_tournament(
     services: ServicesDep, request: Request, tournament_id: TournamentPath, reader: ReaderDep
 ) -> RecordResponse[TournamentView]:
-    """Return the tournament as who asks may see it; its draws only once it has ended.
+    """Return a tournament as the client may see it; its draws only once it has ended.
 
     A tournament of a room is for its participants until it or the room has ended.
     """
@@ -117,9 +117,9 @@ def end_tournament(
     tournament_id: TournamentPath,
     body: EndBody | None = None,
 ) -> RecordResponse[TournamentView]:
-    """Take no more entries; once all are judged, secret and draws are published.
+    """Close a tournament to entries; once all are judged, secret and draws are published.
 
-    With `withdraw_waiting` what is not judged yet is not, but for the references.
+    With `withdraw_waiting` entries that are not judged yet are withdrawn, but for references.
     """
     withdraws = (body or EndBody()).withdraw_waiting
     tournament = services.of(Tournaments).end(tournament_id, withdraw_waiting=withdraws)
@@ -153,7 +153,7 @@ def delete_tournament(services: ServicesDep, tournament_id: TournamentPath) -> N
 
 
 def entry_routes(agents: tuple[str, ...]) -> APIRouter:
-    """Return the route by which one enters, with the bodies of the registered agents.
+    """Return the route that enters a tournament, with the bodies of the registered agents.
 
     Args:
         agents: names of the registered agents.
@@ -178,10 +178,10 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
         reader: ReaderDep,
         body: body_type,
     ) -> RecordResponse[EntryView]:
-        """Enter: participants of the tournament's room by their name there, and operators.
+        """Enter a tournament: as a participant of its room by the name there, or as an operator.
 
-        What is judged alike is entered once. A participant may enter so often an hour as the
-        tournament says; operators as often as they like.
+        An entry that is equal to one of the same entrant is not entered again. A participant may
+        make `entries_per_hour` entries an hour, an operator any number.
         """
         tournament = _known(services, tournament_id, reader)
         check_may_enter(services.of(RoomDirectory), tournament, reader)
@@ -210,10 +210,10 @@ def _known(services: Services, tournament_id: str, reader: Reader) -> Tournament
 def _entry(
     services: Services, tournament: Tournament, reader: Reader, body: Any
 ) -> tuple[EntryConfig, EnteredTable | None]:
-    """Return what a body enters; the training of a participant is an own one.
+    """Return the entry of a request's body, and its table; participants enter own trainings.
 
     Raises:
-        HexapodError: if it cannot enter.
+        HexapodError: if the entry is not valid.
     """
     assert isinstance(body, EntryBody)  # noqa: S101 - by the type of the route's body
     training_id = body.training_id

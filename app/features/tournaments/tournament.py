@@ -1,4 +1,4 @@
-"""A tournament, as it is in the database: its entries, and how far they are judged."""
+"""A tournament, as it is in the database, with its entries and their judgements."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -28,15 +28,15 @@ EntriesPerHour = Annotated[
 DEFAULT_ENTRIES_PER_HOUR = 6
 HOUR = timedelta(hours=1)
 OUTCOME = ("standings", "robots", "versions", "machine")
-"""Fields of a tournament's file that are kept at its end: a later version could not tell them."""
+"""Fields of a tournament's file that are stored at its end: a later version could differ."""
 
 
 class Entrant(NamedTuple):
-    """Whose an entry is.
+    """Entrant of a tournament: a participant, an operator, or the server with a reference.
 
     Attributes:
-        seed: of the participant; None of a reference, or of an operator.
-        name: of the reference, or as the operator has given it.
+        seed: seed of the participant; None for a reference, or an operator.
+        name: name of the reference, or the one that the operator has given.
     """
 
     seed: int | None
@@ -47,8 +47,8 @@ class EnteredTable(NamedTuple):
     """The table of a training that enters.
 
     Attributes:
-        training_id: of the training.
-        sha256: of its file, hexadecimal.
+        training_id: id of the training.
+        sha256: SHA-256 of its file, hexadecimal.
         data: the file.
     """
 
@@ -62,14 +62,14 @@ class TournamentEntry:
     """An entry of a tournament; its judgements come in one after another.
 
     Attributes:
-        number: from 0, in the order of their entering; the references come first.
-        entrant: whose it is.
+        number: number from 0, in the order of their entering; the references come first.
+        entrant: the entrant.
         is_reference: whether it is judged in every tournament.
-        entry: what is judged.
-        training_id: of the training whose table entered; None without one.
+        entry: config that is judged.
+        training_id: id of the training whose table entered; None without one.
         is_withdrawn: whether the end came before it was judged.
-        entered_at: in UTC.
-        judgements: by number of the draw.
+        entered_at: time in UTC.
+        judgements: judgements by number of the draw.
     """
 
     number: int
@@ -82,7 +82,7 @@ class TournamentEntry:
     judgements: dict[int, Judgement] = field(default_factory=dict)
 
     def in_order(self) -> tuple[Judgement, ...]:
-        """Return its judgements in the order of the draws."""
+        """Return the judgements of the entry in the order of the draws."""
         return tuple(judgement for _, judgement in sorted({**self.judgements}.items()))
 
 
@@ -106,18 +106,18 @@ class Tournament:
     """A tournament, as it is in the database.
 
     Attributes:
-        id: hard to guess.
-        title: as its opener has named it.
+        id: id that is hard to guess.
+        title: title that its opener has given.
         room: code of its room; None without one.
-        rules: of all entries.
-        secret: from which the draws follow; it is published at the end.
-        entries_per_hour: entries of a participant within an hour.
+        rules: rules of all entries.
+        secret: secret from which the draws are derived; it is published at the end.
+        entries_per_hour: maximum number of entries of a participant within an hour.
         state: `open` for entries; `ending` until those that wait are judged; or `ended`.
-        created_at, ended_at: in UTC.
-        entries: by number.
-        next_number: of the next entry.
-        standings: of the entries that are judged on all draws, best first; the judge ranks them.
-        outcome: once it has ended, what its file has of these names, in JSON: see `OUTCOME`.
+        created_at, ended_at: times in UTC.
+        entries: entries by number.
+        next_number: number of the next entry.
+        standings: ranking of the entries that are judged on all draws, best first, by the judge.
+        outcome: fields of its file that are named by `OUTCOME`, in JSON; empty before the end.
     """
 
     id: str
@@ -146,12 +146,12 @@ class Tournament:
 
     @property
     def listed(self) -> list[TournamentEntry]:
-        """Its entries by number; a copy, as others may enter meanwhile."""
+        """All entries by number; a copy, as others may enter meanwhile."""
         return list(self.entries.values())
 
     @property
     def progress(self) -> TournamentEvent:
-        """Return its state, and how far its entries are judged, as all may know."""
+        """Data of the `tournament` event: state, and number of entries and of judged draws."""
         counted = [entry for entry in self.listed if not entry.is_withdrawn]
         return TournamentEvent(
             id=self.id,
@@ -163,7 +163,7 @@ class Tournament:
 
     @property
     def entered(self) -> int:
-        """Number of its entries without the references."""
+        """Number of entries without the references."""
         return sum(not entry.is_reference for entry in self.listed)
 
     @property
@@ -181,7 +181,7 @@ class Tournament:
         return len(entry.judgements) >= self.rules.draws
 
     def state_of(self, entry: TournamentEntry) -> EntryState:
-        """Return how far an entry is judged."""
+        """Return the state of an entry: waiting, judging, judged or withdrawn."""
         if entry.is_withdrawn:
             return "withdrawn"
         if self.is_judged(entry):
@@ -198,8 +198,8 @@ class Tournament:
         """Return the entry of an entrant that is judged alike; None if there is none.
 
         Args:
-            entrant: whose it is.
-            entry: as `completed` returns it.
+            entrant: the entrant.
+            entry: config of the entry, as `completed` returns it.
         """
         wanted = self._written_out(entry)
         entries = self.of_entrant(entrant)
@@ -229,7 +229,7 @@ class Tournament:
         return left, None if left else recent[-self.entries_per_hour] + HOUR
 
     def check_open(self) -> None:
-        """Check that it takes entries.
+        """Check that the tournament takes entries.
 
         Raises:
             Conflict: if it does not.
@@ -238,7 +238,7 @@ class Tournament:
             raise Conflict("this tournament takes no more entries", self.state)
 
     def check_not_full(self) -> None:
-        """Check that it has a place for a further entry.
+        """Check that the tournament has a place for a further entry.
 
         Raises:
             Conflict: if it has not.
@@ -247,7 +247,7 @@ class Tournament:
             raise Conflict(f"this tournament has {MAX_ENTRIES} entries, the most", self.state)
 
     def check_ended(self) -> None:
-        """Check that it has ended.
+        """Check that the tournament has ended.
 
         Raises:
             Conflict: if it has not.

@@ -1,4 +1,4 @@
-"""Tournaments as the API responds with them, and who may know what of them."""
+"""Views of tournaments for responses of the API, and checks of the access of readers."""
 
 from dataclasses import replace
 from typing import Any
@@ -42,7 +42,7 @@ def seed_of(tournament: Tournament, reader: Reader) -> int | None:
 def check_may_know(rooms: RoomDirectory, tournament: Tournament, reader: Reader) -> None:
     """Check that a reader may know a tournament: once it or its room has ended, all may.
 
-    Without the classroom it is not known whether a room has ended.
+    Without the classroom feature a room counts as open.
 
     Raises:
         Forbidden: if not.
@@ -145,7 +145,7 @@ def _name(
 
 
 def _own(services: Services, tournament: Tournament, reader: Reader) -> OwnEntries:
-    """Return what a reader may enter."""
+    """Return whether a reader may enter, a reason if not, and the entries left this hour."""
     left, next_at, reason = None, None, None
     seed = seed_of(tournament, reader)
     if seed is not None:

@@ -1,4 +1,4 @@
-"""Estimated time of a run here: its steps times their measured time."""
+"""Estimated duration of a run on this machine: its steps times their measured time."""
 
 import threading
 from collections import defaultdict
@@ -34,7 +34,7 @@ MAX_CACHED = 256
 LIMIT_S = 30.0
 """Processor time for a few steps of each [s]; agents that need more are too slow to be timed."""
 CACHED_S = 600.0
-"""After this time the machine may be busier, or less."""
+"""Lifetime of a cached time of a step [s]: the load of the machine changes."""
 MAX_WAITING = 3
 """Requests that wait until their steps are timed; each holds a thread of the server."""
 
@@ -52,14 +52,14 @@ class _Part(NamedTuple):
     steps: TimedSteps
     number: int
     paced_s: float = 0.0
-    """Shortest time of each, by the pace [s]."""
+    """Shortest time of each step, by the pace [s]."""
 
 
 class Estimates:
     """Estimates durations from timed steps, which are cached for a while. Thread-safe.
 
     Attributes:
-        turns: of the requests whose steps are timed.
+        turns: turns of the requests whose steps are timed.
     """
 
     def __init__(self, pool: ProcessPool, cores: int, stopping: Stopping | None = None) -> None:
@@ -67,7 +67,7 @@ class Estimates:
 
         Args:
             pool: times the steps.
-            cores: how many jobs or trials run at once.
+            cores: number of jobs or trials that run at once.
             stopping: whether the server stops, or the client has left, for whom no more is timed.
         """
         self._stopping = stopping or Stopping()
@@ -77,12 +77,12 @@ class Estimates:
         self.turns = Turns("estimates", MAX_WAITING)
 
     def of(self, start: TrainingStart | RaceStart | BranchStart | ManyPractices) -> float:
-        """Return how long a run would take once it has a core [s].
+        """Return the estimated duration of a run once it has a core [s].
 
         Raises:
             InvalidInput: if an agent fails at once, or its steps take too long to be timed; or of a
                 race that branches off.
-            Busy: if others wait for that, or the pool is closed.
+            Busy: if too many requests wait for their turn, or the pool is closed.
         """
         if isinstance(start, ManyPractices):
             return self._all_practices_s(start) / start.at_once(self._cores)
@@ -104,7 +104,7 @@ class Estimates:
     def workers_of(
         self, start: TrainingStart | RaceStart | BranchStart | ManyPractices
     ) -> int | None:
-        """Return how many of a run's many practices are computed at once; None of other runs."""
+        """Return the number of practices that are computed at once; None for a training or race."""
         return start.at_once(self._cores) if isinstance(start, ManyPractices) else None
 
     def close(self) -> None:

@@ -60,7 +60,7 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
     def ask(
         services: ServicesDep, request: Request, role: RoleDep, body: training_body
     ) -> RecordResponse[ComparisonView]:
-        """Return what a practice with these settings would give, on the kinematic simulator."""
+        """Return distances with these settings and with defaults, on the kinematic simulator."""
         if body.continue_from is not None:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
         requester = WhatIfRequester(check=services.stopping.check)
@@ -109,11 +109,11 @@ def spectator(services: Services, client: str) -> WhatIfRequester:
     """Return a spectator as the requester of a what-if, charged for what it takes beyond a second.
 
     Args:
-        services: those of the core.
-        client: who is charged: an address, or the name of an identity.
+        services: services of the core.
+        client: client that is charged: an address, or the key of an identity.
 
     Raises:
-        Busy: if those before have taken more than its allowance.
+        Busy: if the client's what-ifs before have taken more than its allowance.
     """
     allowance = services.of(WhatIfAllowance)
     allowance.check(client)

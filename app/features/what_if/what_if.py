@@ -29,7 +29,7 @@ MAX_VALUES = 1_200_000
 """Maximum number of values of a Q-table: each trial holds one, and writes it to a file."""
 MAX_CACHED = 512
 MAX_WAITING = 4
-"""Questions of operators, and of spectators, that may wait."""
+"""Maximum number of what-ifs of operators that wait, and of those of spectators."""
 OPERATORS_LIMIT_S, SPECTATORS_LIMIT_S = 60.0, 10.0
 """Time for which one what-if may compute on all cores [s], in processor time: on the clock on the
 wall, settings that take a second would count as too heavy on a busy machine."""
@@ -42,8 +42,8 @@ class WhatIfRequester:
     Attributes:
         is_operator: whether it is an operator, whose what-ifs come first and may take longer.
         check: raises once nobody needs the answer any more; called ten times a second.
-        charge: called with what it cost [s]: the cores' time, shared among them; if there is no
-            answer, the time that passed, at most its limit.
+        charge: called with the cost of a what-if [s]: processor time divided by the number of
+            cores; if there is no answer, the time that passed, at most its limit.
     """
 
     is_operator: bool = True
@@ -52,7 +52,7 @@ class WhatIfRequester:
 
     @property
     def limit_s(self) -> float:
-        """For how long its what-ifs may compute [s]."""
+        """Maximum computing time of a what-if of this client [s]."""
         return OPERATORS_LIMIT_S if self.is_operator else SPECTATORS_LIMIT_S
 
 
@@ -82,7 +82,7 @@ class WhatIf:
         Args:
             training: the training; its simulator, build tolerance, seed, evaluations and pace are
                 ignored.
-            requester: who asks.
+            requester: the client, with its limits.
 
         Raises:
             InvalidInput, UnknownName, Unreachable: if the training is invalid, or takes too long.
