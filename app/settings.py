@@ -55,25 +55,25 @@ class Settings:
 
     Attributes:
         host: address to bind, by number or name.
-        port: to bind; 0 lets the system choose.
+        port: TCP port to bind; 0 lets the system choose.
         data: the data folder; made if it is not there.
         token: makes its bearer an operator; None makes everyone one, which is only allowed on
             loopback.
-        spectators: `public` lets anyone watch, `token` only who has the token.
-        public_url: where a proxy offers the server, such as `https://hexapods.example`.
+        spectators: `public` lets anyone watch, `token` only clients with the token.
+        public_url: address at which a proxy offers the server, such as `https://hexapods.example`.
         allowed_hosts: further host names by which the server may be called.
         trusted_proxies: addresses and networks of the proxies whose `X-Forwarded-For` and
             `X-Forwarded-Proto` are believed; of other clients these headers are ignored.
-        database_url: of a PostgreSQL database, which may hold a password; None for SQLite in the
-            data folder.
-        max_connections: how many may be open at once; None for as many as the limit of open files
-            allows beside the server's own.
-        max_connections_per_address: of these, how many one address may have; None for half.
-        starts_per_minute: how often one address may start something that costs the machine work.
+        database_url: URL of a PostgreSQL database, which may hold a password; None for SQLite in
+            the data folder.
+        max_connections: maximum number of open connections; None for as many as the limit of open
+            files allows beside the server's own.
+        max_connections_per_address: maximum number of these of one address; None for half.
+        starts_per_minute: maximum rate at which one address may start work, such as runs.
         job_niceness: by how much the priority of jobs is lower than the server's own, 0 to 19.
-        log_level: below which records are left out of the log.
-        quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
-        max_viewers: how many may watch the stage at once, and as many may follow the events.
+        log_level: level below which records are left out of the log.
+        quota_mb: maximum size of the data folder, in MB; None for as much as the disk has.
+        max_viewers: maximum number of viewers of the stage, and of listeners to its events.
         without: names of the features that are left out.
         features: settings of features, of those that are left out, too.
     """
@@ -116,7 +116,7 @@ class Settings:
 
     @property
     def viewers_per_address(self) -> int:
-        """Maximum of them per address: many, as a class may share one, but not all."""
+        """Maximum number of viewers per address: many, as a class may share one, but not all."""
         return max(1, self.max_viewers * 4 // 5)
 
     @property
@@ -169,7 +169,7 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
         options: the attributes of `Settings` and of the settings of features, by their names.
 
     Raises:
-        InvalidInput: for a value that cannot be, or a refusal to start with it.
+        InvalidInput: if a value is not valid, or the server refuses to start with it.
     """
     features, without = read_feature_settings(environ, **options), _without(environ, options)
     of_core = {declared.name for declared in fields(Settings)}
@@ -224,7 +224,7 @@ def _kinds_of_features(without: Collection[str]) -> list[type[FeatureSettings]]:
 def _values_set(
     setting_names: Collection[str], environ: Mapping[str, str], options: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return what is set of these settings, by name: options before variables."""
+    """Return the values of these settings that are set, by name: options before variables."""
     texts = {name: value for name in setting_names if (value := environ.get(variable_of(name)))}
     return texts | {
         name: value
@@ -272,7 +272,7 @@ def remove_secrets() -> None:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine can reach what listens there."""
+    """Whether a host is a loopback address, which only this machine can reach."""
     if host == "localhost":
         return True
     try:

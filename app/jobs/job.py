@@ -139,7 +139,7 @@ class Job:
         self.process.send(Command("resume"))
 
     def stop(self) -> None:
-        """Stop after the current step and keep the results so far; kill it if it has not begun."""
+        """Stop after the current step and keep the results so far; kill a run that has not begun."""
         self.stopping = True
         if self._has_begun:
             self.process.send(Command("stop"))
@@ -147,7 +147,7 @@ class Job:
             self.process.kill()
 
     def checkpoint_and_exit(self) -> None:
-        """Exit after the current step, a training with a checkpoint; kill what has none to write.
+        """Exit with a checkpoint after the current step; kill a race, or a run that has not begun.
 
         Used when the server shuts down: the run is `interrupted` and can be resumed.
         """
@@ -164,7 +164,7 @@ class Job:
             within_s: time after which the process discards the command [s].
 
         Returns:
-            what is set once the process has acknowledged the change.
+            the acknowledgement, which is set once the process has answered.
         """
         token, acknowledged = next(self._tokens), Acknowledgement()
         self._acknowledgements[token] = acknowledged
@@ -195,7 +195,7 @@ class Job:
 
     @property
     def can_start_again(self) -> bool:
-        """Whether the run is as it was before the start of the process: nothing came of it."""
+        """Whether the run is as before the start of the process, which has reported nothing."""
         return not (self._has_reported or self.paused or self.stopping or self.ended.is_set())
 
     @property
@@ -356,9 +356,9 @@ class Job:
             self._save_regularly()
 
     def _save_regularly(self) -> None:
-        """Store what a race has recorded, so that its last picture outlives the server.
+        """Store the recording of a race every `CHECKPOINT_EVERY_S`, for a crash of the server.
 
-        A training does so with its checkpoints.
+        The recording of a training is stored with its checkpoints.
         """
         now = time.monotonic()
         if now - self._saved_s >= CHECKPOINT_EVERY_S:
@@ -409,7 +409,7 @@ class Job:
             self.end(ended.outcome, result=result)
 
     def _result_so_far(self) -> RaceResult | None:
-        """Return the result of what is recorded of a race; None for other runs."""
+        """Return the result of a race from its recording so far; None for other runs."""
         lanes = self._recordings.race(self.run_id)
         if lanes is None or not isinstance(self._task, RaceTask):
             return None

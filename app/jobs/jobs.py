@@ -77,7 +77,7 @@ class Jobs:
             recordings: receives the motion of the robots.
             bus: receives the events.
             on_queued: called with the id of each training or race that was submitted.
-            owner_of: returns who waits for a run; None for an operator.
+            owner_of: returns the owner of a run; None for an operator.
             cores: maximum number of jobs that run at once; by default one per core.
             niceness: added to the server's nice value in worker processes.
         """
@@ -125,7 +125,7 @@ class Jobs:
         self._supervisor.close()
 
     def view(self, run: AnyRun) -> RunView | DamagedRunView:
-        """Return a run as the API tells it, with its position in the queue."""
+        """Return the view of a run, with its position in the queue."""
         return view_of(run, self._queue.position(run.id))
 
     def start(self, start: Start, key: IdempotencyKey | None = None) -> Run:
@@ -235,7 +235,7 @@ class Jobs:
         Raises:
             NotFound: if there is no such run.
             Conflict: if it neither runs nor is paused, or was changed `MAX_CHANGES` times.
-            UnknownName, InvalidInput: for what cannot be changed so.
+            UnknownName, InvalidInput: if a setting cannot be changed live, or has no such value.
             NotAnswering: if its process does not acknowledge in time; nothing is changed then.
             Busy: if too many changes wait for acknowledgement.
         """
@@ -256,11 +256,11 @@ class Jobs:
         return self._store.get(run_id)
 
     def disturb(self, run_id: str, disturbance: Disturbance) -> Disturbance:
-        """Let something happen to a training from its next step on, and wait for it.
+        """Disturb a training from its next step on, and wait for the acknowledgement.
 
         Args:
             run_id: id of the training.
-            disturbance: what happens; its `at_step` is replaced.
+            disturbance: the disturbance; its `at_step` is replaced.
 
         Returns:
             the disturbance, with the step in which it begins.
@@ -268,7 +268,7 @@ class Jobs:
         Raises:
             NotFound: if there is no such run.
             Conflict: if it neither runs nor is paused, or was changed `MAX_CHANGES` times.
-            InvalidInput: if it cannot happen to this robot, or contradicts what else happens.
+            InvalidInput: if it cannot happen to this robot, or contradicts another disturbance.
             NotAnswering: if its process does not acknowledge in time; nothing happens then.
             Busy: if too many changes wait for acknowledgement.
         """
@@ -319,7 +319,7 @@ class Jobs:
         return sent.changed
 
     def annotate(self, run_id: str, changes: Mapping[str, Any]) -> Run:
-        """Change what users say of a run: any of its `ANNOTATIONS`, in any state.
+        """Change the `ANNOTATIONS` of a run, name, tags and notes, in any state.
 
         Raises:
             NotFound: if there is no such run.

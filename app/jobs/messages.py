@@ -45,8 +45,8 @@ class RaceTask:
     Attributes:
         config: the race.
         tables: a table or None for each lane.
-        prefix: for each lane the steps, without motion, that the race from which it branches off
-            has taken until then, as far as they are at hand.
+        prefix: for each lane the steps, without motion, of the race from which it branches off, up
+            to the branch, as far as they are recorded.
     """
 
     config: RaceConfig
@@ -66,14 +66,14 @@ class AddedTask(ABC):
     def run(
         self, send: "Callable[[Message], None]", commands: "queue.SimpleQueue[Command]"
     ) -> None:
-        """Run it in its process, to its end, or until a `stop` or `checkpoint_and_exit` command.
+        """Compute the run to its end, or until a `stop` or `checkpoint_and_exit` command.
 
         Args:
             send: sends a message to the server: `Began` first, and at the end `Ended`.
             commands: received from the server.
 
         Raises:
-            HexapodError: if it cannot continue.
+            HexapodError: if the run cannot continue.
         """
 
 

@@ -1,4 +1,4 @@
-"""Ends long work for requests, in threads of a server: it stops, or their client has left."""
+"""Ends long work of requests in threads, when the server stops or the client has left."""
 
 import threading
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ class Stopping:
     """Flag of a server that is stopping. Thread-safe."""
 
     def __init__(self) -> None:
-        """Create it for a server that runs."""
+        """Create a cleared flag, as of a running server."""
         self._is_set = threading.Event()
 
     def set(self) -> None:

@@ -1,4 +1,4 @@
-"""Validate what a user asks to start, and build the runs to be queued from it."""
+"""Validate requests to start runs, and build the runs to be queued from them."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -28,7 +28,7 @@ class Start(Protocol):
         """Return the run to be queued, not stored yet, preceded by those that are part of it.
 
         Raises:
-            InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
+            InvalidInput, TableMismatch, NotFound, Conflict: if the run cannot be started.
         """
 
 
@@ -40,11 +40,11 @@ class ManyPractices(Protocol):
         """Yield configs, each with the number of steps that are computed of it.
 
         Raises:
-            InvalidInput, UnknownName, Unreachable: if it cannot be started.
+            InvalidInput, UnknownName, Unreachable: if the run cannot be started.
         """
 
     def at_once(self, cores: int) -> int:
-        """Return how many practices are computed at once on a machine with so many cores."""
+        """Return the number of practices that are computed at once on so many cores."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,9 @@ class TrainingStart:
 
     Attributes:
         config: the training; its seed is ignored if it continues another.
-        name: None for a generated name.
+        name: name of the run; None for a generated one.
         continue_from: id of the training whose table it continues from.
-        notes: of the run.
+        notes: notes of the run.
     """
 
     config: TrainingConfig
@@ -93,8 +93,8 @@ class LaneStart:
     """Request for a lane: with a training's table, with a training to run first, or neither.
 
     Attributes:
-        given: what is given of the lane's other fields, by name; see `lane_config`.
-        settings: the agent's settings that are given with the lane, by name.
+        given: values of other fields of the lane in the request, by name; see `lane_config`.
+        settings: values of the agent's settings in the request, by name.
     """
 
     agent: str
@@ -105,7 +105,7 @@ class LaneStart:
 
     @property
     def has_training(self) -> bool:
-        """Whether it races with what it has learned in a training."""
+        """Whether the lane uses the table of a training, which ended or is to run first."""
         return self.training_id is not None or self.training is not None
 
 
@@ -152,12 +152,12 @@ class RaceStart:
 
 @dataclass(frozen=True)
 class BranchStart:
-    """Request to race on from a moment of another race, with something else that happens.
+    """Request to branch off from a step of another race, with further disturbances.
 
     Attributes:
         branch: the race and its step.
-        disturbances: what happens from that step on or later.
-        name: None for a generated name.
+        disturbances: disturbances from that step on or later.
+        name: name of the run; None for a generated one.
     """
 
     branch: Branch
@@ -243,7 +243,7 @@ class CopyStart:
 
 
 def check_training(config: TrainingConfig) -> None:
-    """Check that the robot reaches its foot grid, and that what is learned would fit into memory.
+    """Check that the robot reaches its foot grid, and that the learner would fit into memory.
 
     Raises:
         Unreachable: if a leg cannot reach a cell.

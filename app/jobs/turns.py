@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from app.storage.errors import Busy
 
 GRACE_S = 1.0
-"""For so long an operator's request lets a spectator's go on, which is mostly done by then [s]."""
+"""Time for which an operator's request lets a spectator's go on [s]; most have ended by then."""
 _LOOK_EVERY_S = 0.1
 _RETRY_S = 5
 
@@ -18,16 +18,16 @@ class Turns:
     """Gives turns to requests, each in a thread of its own. Thread-safe."""
 
     def __init__(self, what: str, max_waiting: int) -> None:
-        """Create it with nobody waiting.
+        """Create an empty queue of requests.
 
         Args:
             what: name of the requests, for the error: `questions`.
-            max_waiting: requests of operators, and of spectators, that may wait.
+            max_waiting: maximum number of requests of operators that wait, and of spectators.
         """
         self._what, self._max_waiting = what, max_waiting
         self._changed = threading.Condition()
         self._waiting: list[tuple[bool, int]] = []
-        """Whether each is a spectator's, and its number; the least is the next."""
+        """Tickets: whether the request is a spectator's, and its number; the least is the next."""
         self._numbers = itertools.count()
         self._is_taken = False
 
@@ -40,14 +40,14 @@ class Turns:
     def turn(
         self, check: Callable[[], None], *, is_operator: bool = True
     ) -> Iterator[Callable[[], None]]:
-        """Wait for the turn, and have it.
+        """Wait for the turn of a request, and hold it within the context.
 
         Args:
-            check: called ten times a second while it waits; if it raises, it waits no more.
-            is_operator: whether it comes before the requests of spectators.
+            check: called ten times a second while the request waits; if it raises, the wait ends.
+            is_operator: whether the request comes before those of spectators.
 
         Returns:
-            what to call while having the turn, often: it calls `check`, and raises `Busy` if an
+            a function to be called often during the turn: it calls `check`, and raises `Busy` if an
             operator has waited for a spectator's request for `GRACE_S`.
 
         Raises:

@@ -43,7 +43,7 @@ class LimitedHttpProtocol(H11Protocol):
         app_state: dict[str, Any],
         _loop: AbstractEventLoop | None = None,
     ) -> None:
-        """Create it as uvicorn does, with a parser that bounds the cost of a head."""
+        """Create the protocol as uvicorn does, with a parser that bounds the cost of a head."""
         super().__init__(config, server_state, app_state, _loop)
         self.conn: BoundedConnection = BoundedConnection()
 
@@ -88,9 +88,9 @@ class LimitedHttpProtocol(H11Protocol):
         super().handle_websocket_upgrade(event)
 
     def send_400_response(self, msg: str) -> None:
-        """Refuse a request that cannot be parsed, with what is wrong, and close the connection.
+        """Refuse a request that cannot be parsed, with the reason, and close the connection.
 
-        What has begun to be answered is cut off.
+        A response that has begun is cut off.
         """
         if self.conn.our_state not in (h11.IDLE, h11.SEND_RESPONSE):
             self.transport.abort()
@@ -155,7 +155,7 @@ def limited_http(table: ConnectionTable) -> type[LimitedHttpProtocol]:
     """Create the protocol class of one server, for the `http` argument of `uvicorn.Config`.
 
     Args:
-        table: of the server's connections.
+        table: table of the server's connections.
     """
 
     class _BoundHttpProtocol(LimitedHttpProtocol):
