@@ -1,4 +1,4 @@
-"""Playback of stored runs: their shows, and replays that are kept.
+"""Playback of stored runs: their shows, and a cache of their replays.
 
 The stage has one playback position for everybody. A replay (`hexapods.shows.replay`) has none: it
 is asked for the frame at a time, so that every page can have a position of its own.
@@ -30,7 +30,8 @@ from hexapods.shows.scene_spec import race_scene, training_scene
 from hexapods.shows.show import RunLabel
 
 KEPT_BYTES = 50_000_000
-"""Size of the recordings of the replays that are kept; the newest is always kept."""
+"""Capacity of the cache of replays, by the size of their recordings [bytes]; it keeps at least
+the newest."""
 _KEPT_REPLAYS = 64
 _RUNNING_BYTES = KEPT_BYTES // 8
 """Size that a replay of a run that is still computed counts as: its recording grows."""
@@ -126,7 +127,7 @@ class StoredReplay(Replay):
 
     @property
     def version(self) -> str:
-        """Identifies what the frames are made from, but for the steps that are still to come."""
+        """Version of the frames: it changes with all that they depend on but further steps."""
         return _version_of(self.run, self.stored_ghost.run if self.stored_ghost else None)
 
     @property
@@ -171,7 +172,7 @@ class Replays:
     Args:
         store: store of the runs.
         recordings: recordings of the runs.
-        max_bytes: size of the recordings of those that are kept.
+        max_bytes: capacity of the cache, by the size of the recordings.
     """
 
     def __init__(

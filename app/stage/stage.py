@@ -39,7 +39,7 @@ _RECENT_RUNS = 20
 _logger = logging.getLogger(__name__)
 _NO_MEMBERS: Mapping[str, Record] = MappingProxyType({})
 _SAME_END = timedelta(seconds=15)
-"""The runs that the end of a server interrupts end within less."""
+"""Time within which all runs end that the end of a server interrupts."""
 
 
 class Announcement(Answer):
@@ -91,10 +91,10 @@ class Stage:
     Args:
         store: store of the runs.
         recordings: recordings of the runs.
-        channel: tells of changed and deleted runs; receives a `stage` event at each change.
+        channel: has events of changed and deleted runs; receives a `stage` event at each change.
         now: monotonic clock of playback [s].
         announces: whether it shows earlier races by itself.
-        members: by name of a member of its state, what it keeps for those who use it.
+        members: records that features add to its state, by the member's name.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class Stage:
         """The runs of the playlist."""
         self._show: Show = IdleShow()
         self._world: World = UNDISTURBED
-        """All that happens in the run on stage, as far as it is known."""
+        """World of the run on stage, with its disturbances as far as they are known."""
         self._changes = channel.subscribe(run_ids=())
         """Events about the runs of the playlist."""
         self._members = dict(members)
@@ -210,7 +210,7 @@ class Stage:
             clock: times a race; see `hexapods.runs.clocks`.
             end_at_time_out: whether the show of a race ends with its photo finish, where the
                 ranking is settled, or goes on until its last lane has ended.
-            members: of those that it keeps for others, the new ones.
+            members: new records of members that features add to the state, by name.
             stay: keep the run on stage, as if a person had chosen it.
 
         Raises:
@@ -241,7 +241,7 @@ class Stage:
             self._publish()
 
     def state(self) -> StageView:
-        """Return the state of playback, with the members that it keeps for others."""
+        """Return the state of playback, with the members that features add."""
         with self._lock:
             self._update_playlist()
             state, ids = self._state, [run.id for run in self._state.playlist]
@@ -281,7 +281,7 @@ class Stage:
             return self._show.frame(self._run_label())
 
     def scene(self) -> SceneView:
-        """Return the current frame as pages are told of it, without advancing playback."""
+        """Return the view of the current frame for pages, without advancing playback."""
         with self._lock:
             return scene_view(self._show.frame(self._run_label()))
 
@@ -320,7 +320,7 @@ class Stage:
         return self._state is not before
 
     def _update_playlist(self) -> None:
-        """Apply what the bus told of the playlist's runs since the last call."""
+        """Apply the events about runs of the playlist since the last call."""
         changes = self._changes.drain()
         if not changes:
             return
@@ -382,7 +382,7 @@ class Stage:
         run = next((run for run in finished if self._is_recorded(run)), None)
         if run is None:
             return
-        # Whose deletion ends the announcement.
+        # Its deletion ends the announcement.
         changes = self._channel.subscribe([*self._runs, run.id], names=_RUN_EVENTS)
         self._update_playlist()
         self._follow_changes(changes)

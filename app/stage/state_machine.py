@@ -47,12 +47,12 @@ class StagedRun(NamedTuple):
 
     @property
     def is_computed(self) -> bool:
-        """Whether it is queued, running or paused."""
+        """Whether the run is queued, running or paused."""
         return self.state in NOT_ENDED
 
     @property
     def is_void(self) -> bool:
-        """Whether it ended before it began, as a race with the training that it waited for."""
+        """Whether the run ended before it began, as a race with the training that it waited for."""
         return not self.has_begun and not self.is_computed and self.state != "finished"
 
 
@@ -135,14 +135,14 @@ class StageState:
         return StageState("live" if left[0].is_computed else "showing", self.origin, left)
 
     def announce(self, run_id: str) -> "StageState":
-        """Return the state with a run announced, if that may be."""
+        """Return the state with a run announced; the same unless `may_announce`."""
         return replace(self, announced=run_id) if self.may_announce else self
 
     def stay(self) -> "StageState":
-        """Return the state in which a person wants what is on stage to stay."""
+        """Return the state with the run kept on stage, as if a person had chosen it."""
         return replace(self, origin="chosen", announced=None)
 
 
 def _to_be_shown(playlist: tuple[StagedRun, ...]) -> tuple[StagedRun, ...]:
-    """Return a playlist without those after the first that there is nothing to see of."""
+    """Return a playlist without runs after the first that ended before they began."""
     return playlist[:1] + tuple(run for run in playlist[1:] if not run.is_void)

@@ -18,7 +18,7 @@ def json_text(data: Any) -> str:
 
 
 def read_json(text: object) -> Any:
-    """Return what a column has as JSON; None of what is none."""
+    """Parse the JSON text of a column; return None if it is not valid JSON."""
     try:
         return json.loads(str(text))
     except (ValueError, RecursionError):

@@ -41,7 +41,7 @@ def make_private(folder: Path, entries: Collection[str]) -> None:
 
 
 def exposed_paths(folder: Path, entries: Collection[str]) -> list[Path]:
-    """Return what other users have a permission for: the folder, and entries if it lets them in.
+    """Return folder and entries that other users have permissions for; none in a closed folder.
 
     Args:
         folder: an existing folder.
@@ -60,7 +60,7 @@ def _is_exposed(path: Path) -> bool:
 
 
 def _tighten(path: Path) -> bool:
-    """Take the permissions of others; return whether there were some, and they are gone."""
+    """Remove the permissions of other users; return whether there were some, and are gone."""
     if path.is_symlink() or not _is_exposed(path):
         return False
     try:

@@ -54,7 +54,7 @@ class Recordings:
     def training(self, run_id: str) -> PracticeRecording | None:
         """Return the recording of a training; None if it has not started or was not recorded.
 
-        Of the evaluations of one that ended only the newest motion is there.
+        Of the evaluations of an ended training only the newest has its motion.
         """
         growing = self._growing.get(run_id)
         if isinstance(growing, GrowingTraining):
@@ -113,13 +113,13 @@ class Recordings:
             self._growing[run_id].add(record)  # type: ignore[arg-type]  # a run's own kind
 
     def log(self, run_id: str, steps: Transitions) -> None:
-        """Append to the log of a training, if it has one from its first step."""
+        """Append steps to the log of a training, if it has one from its first step."""
         growing = self._growing.get(run_id)
         if isinstance(growing, GrowingTraining):
             growing.extend_log(steps)
 
     def save(self, run_id: str) -> None:
-        """Store what a run has recorded so far; call from the run's writer thread.
+        """Store the recording of a run so far; call from the run's writer thread.
 
         Raises:
             StorageFull, StorageFailed: if it cannot be stored.

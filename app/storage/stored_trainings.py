@@ -26,8 +26,8 @@ class GrowingTraining:
     """The recording of a training that runs. One thread adds to it.
 
     Attributes:
-        recording: its steps and evaluations, of which many may read.
-        log: all its steps; None of a training that resumed without a whole log.
+        recording: its steps and evaluations; other threads may read them.
+        log: log of all its steps; None for a training that resumed without a whole log.
     """
 
     def __init__(
@@ -45,12 +45,12 @@ class GrowingTraining:
         self.recording.add(record)
 
     def extend_log(self, steps: Transitions) -> None:
-        """Append to the log, if there is one from the first step."""
+        """Append steps to the log, if there is one from the first step."""
         if self.log is not None:
             self.log.extend(steps)
 
     def checkpoint(self) -> None:
-        """Store what is new: files that are complete are skipped.
+        """Store new steps and evaluations: files that are complete are skipped.
 
         The motions of stored evaluations are dropped from memory, where they would be up to 80 MB.
 
@@ -70,7 +70,7 @@ class GrowingTraining:
         self.recording.forget_motions(complete)
 
     def finish(self) -> None:
-        """Store it; of its evaluations only the newest motion stays in memory.
+        """Store the recording; of its evaluations only the newest motion stays in memory.
 
         Raises:
             StorageFull, StorageFailed: if it cannot be stored; it stays in memory then.
@@ -96,7 +96,7 @@ def read_training(store: RunStore, run_id: str, is_whole: bool = True) -> Practi
     """Return the stored recording of a training; None if there is none.
 
     Args:
-        store: where it is.
+        store: store of the runs.
         run_id: id of the training.
         is_whole: whether all motions of its evaluations are to be there, which may take 80 MB, not
             only the newest.

@@ -36,7 +36,7 @@ class ReplayFrames:
         self._encodings = BytesCache(_CACHE_BYTES)
 
     def plan(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> ReplayView:
-        """Return what a page needs to play a run.
+        """Return the plan by which a page plays a run: duration, recorded intervals, segments.
 
         Raises:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
@@ -82,7 +82,7 @@ class ReplayFrames:
         Args:
             run_id: id of a training or race.
             clock: times a race.
-            time_s: whose conditions it is drawn in [s]: legs that are lost are left out.
+            time_s: time of the world in which it is drawn [s]: legs that are lost are left out.
             lane: the lane, counted from 0.
             cells: the cell of each group.
 
@@ -145,7 +145,7 @@ class ReplayFrames:
         )
 
     def _encoded_once(self, key: Hashable, is_final: bool, encode: Callable[[], bytes]) -> bytes:
-        """Return an encoding that is kept if it is final, of which a later one is the same."""
+        """Return a cached encoding, or encode; cached if final, so that later ones are the same."""
         with self._encoding():
             # Another request for it may have been encoded while this one waited.
             if (cached := self._encodings.get(key)) is not None:

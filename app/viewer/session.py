@@ -29,7 +29,7 @@ _HIGH_WATER_BYTES = 16 * 1024
 _UNSENT_BYTES = 16 * 1024
 _SEND_BUFFER_BYTES = 512 * 1024
 _NOT_SENT_LOW_AT = getattr(socket, "TCP_NOTSENT_LOWAT", 25) if sys.platform == "linux" else None
-"""Number of the option on Linux, which Python names from 3.12 on."""
+"""Number of the socket option TCP_NOTSENT_LOWAT, which Python names from 3.12 on."""
 _MESSAGE_LIMIT_BYTES = 64 * 1024
 _MAX_VIEW_BYTES = 64
 """Far smaller than the camera poses that every viser client sends, which need no decoding then."""
@@ -237,7 +237,7 @@ class ViewerProtocol(WebSocketsSansIOProtocol):
         sock.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_AT, _UNSENT_BYTES)
 
     def data_received(self, data: bytes) -> None:
-        """Handle what a browser sends; end the connection if that is no handshake.
+        """Handle received data; close the connection after an invalid handshake.
 
         uvicorn leaves it open then, unanswered, and would wait for it when the server stops.
         """

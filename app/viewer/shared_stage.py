@@ -29,11 +29,12 @@ class SharedStage:
     bus, and the slots for viewers. Within `async with` viser, the drawing thread and the hub run.
 
     Attributes:
-        path: of its page, without a slash at its end, such as ""; that of the API begins with it.
-        roles: who may do what.
+        path: path of its page, without a slash at its end, such as ""; that of the API begins with
+            it.
+        roles: roles of clients on it.
         session_path: path of the stage whose sessions operators have here.
-        channel: its events, and those of the runs.
-        stage: what is shown.
+        channel: channel of its events, and of those of the runs.
+        stage: the stage: which run is shown, and its playback.
         hub: relays the picture to viewers.
     """
 
@@ -50,18 +51,18 @@ class SharedStage:
         announces: bool = True,
         members: Mapping[str, Record] = MappingProxyType({}),
     ) -> None:
-        """Create it with an empty stage; entering the context starts the rest.
+        """Create an empty stage and its hub; entering the context starts viser and the drawing.
 
         Args:
             store: store of the runs.
             recordings: recordings of the runs.
-            bus: tells of changed and deleted runs; receives the events of the stage.
+            bus: has the events of changed and deleted runs; receives the events of the stage.
             roles: see the class.
             viewer_slots: limit the viewers of all stages.
             path: see the class.
             session_path: path of the stage whose sessions operators have here; by default its own.
             announces: whether it shows earlier races by itself.
-            members: by name, what the stage keeps for those who use it.
+            members: records that features add to the state of the stage, by name.
         """
         self.path, self.roles = path, roles
         self.session_path = path if session_path is None else session_path

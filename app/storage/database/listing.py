@@ -35,7 +35,7 @@ class Listing(NamedTuple):
     """Query of a list of runs: filters, sort order and page.
 
     Attributes:
-        kind: only runs of this kind; None for all. Runs whose kind cannot be read are of every one.
+        kind: only runs of this kind; None for all. Runs of unreadable kind are of every one.
         state: only runs in this state; None for all.
         limit: items per page.
         cursor: `Page.next_cursor` of the page before; None for the first page.
@@ -118,7 +118,7 @@ def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
 
 
 def _sort_key(connection: Connection, sort: Sort) -> ColumnElement[Any] | None:
-    """Return what rows are sorted by before their id; None if by nothing."""
+    """Return the expression that rows are sorted by before their id; None to sort by id only."""
     if sort == "distance":
         return func.coalesce(cast(RUNS.c.distance_m, Double), _NO_DISTANCE)
     if sort == "name":

@@ -42,7 +42,7 @@ class RobotOrigin(NamedTuple):
 
     Attributes:
         upload: the file.
-        found: what was found in it, in JSON.
+        found: findings in the file, in JSON.
     """
 
     upload: bytes
@@ -56,17 +56,17 @@ class RobotStore:
     without a row, which the next start deletes.
 
     Attributes:
-        users: by noun of what may name robots, the columns in which it does, of one table.
-        version: of the list of robots; a greater one after each change.
+        users: columns of one table that may name robots, by the noun of its rows.
+        version: version of the list of robots; a greater one after each change.
     """
 
     def __init__(self, database: Database, folder: Path, disk_space: DiskSpace) -> None:
-        """Use a table and a folder.
+        """Use the `robots` table of a database, and a folder for the files.
 
         Args:
-            database: where the rows are.
-            folder: for these files alone; must exist before the first write.
-            disk_space: to check before each write.
+            database: database with the table.
+            folder: folder for these files alone; must exist before the first write.
+            disk_space: checked before each write.
         """
         self._database, self._folder, self._disk_space = database, folder, disk_space
         # Lock of changes: a robot must not be deleted between its document's writing and its row's.
@@ -151,8 +151,8 @@ class RobotStore:
         """Store a robot, unless it is stored already; then it is hidden no longer.
 
         Args:
-            document: of the robot; validated.
-            about: what is stored beside it.
+            document: document of the robot, validated.
+            about: fields that are stored beside the document.
             origin: the file that it was read from, if it was.
 
         Returns:
@@ -183,7 +183,7 @@ class RobotStore:
             origin: the file that all of them were read from, if they were.
 
         Yields:
-            those whose rows are to be inserted.
+            the robots whose rows are to be inserted.
         """
         robots = list(robots)
         if not robots:  # as of most imports, which need not wait for each other
@@ -243,17 +243,17 @@ class RobotStore:
         put_rows(connection, ROBOTS, [_encode(robot) for robot in robots])
 
     def check(self, connection: Connection, robots: Iterable[Robot]) -> None:
-        """Check within a transaction that those of some robots that are stored ones are here.
+        """Check within a transaction that the stored ones of some robots have a row.
 
         Raises:
-            NotFound: if one was deleted.
+            NotFound: if a robot was deleted.
         """
         for robot in robots:
             if robot.id is not None:
                 _fetch(connection, robot.id)
 
     def change(self, robot_id: str, **fields: Any) -> StoredRobot:
-        """Change what is stored beside a robot's document, and return it.
+        """Change fields that are stored beside a robot's document, and return the robot.
 
         Raises:
             NotFound: if there is no such robot.
@@ -279,8 +279,8 @@ class RobotStore:
 
         Args:
             robot_id: id of the other.
-            document: of the robot.
-            about: what is stored beside it.
+            document: document of the robot.
+            about: fields that are stored beside the document.
             origin: the file that both were read from.
 
         Raises:
@@ -375,11 +375,11 @@ class RobotStore:
         forget_configs()  # which have the robots' names
 
     def _names(self, robot_id: str | None = None) -> list[str]:
-        """Return the names of all robots, or of all others."""
+        """Return the names of all robots, or of all but one."""
         return [robot.name for robot in self.stored(hidden=True) if robot.id != robot_id]
 
     def _users_of(self, connection: Connection, robot_id: str) -> dict[str, int]:
-        """Return the numbers, by noun, of what names a robot; only of some."""
+        """Return the number of rows that name a robot, by their noun; without zeros."""
         counts = {}
         for noun, columns in self.users.items():
             named = (cast(column, String).contains(robot_id) for column in columns)

@@ -73,8 +73,8 @@ class RunStore:
     changed then.
 
     Attributes:
-        database: where the rows are.
-        files: where the artifacts are.
+        database: database with the rows.
+        files: files of the artifacts.
         curves: learning curves of trainings.
         baselines: distances of one-step look-ahead, which all jobs share.
         kinds: names of the kinds of runs that are not left out.
@@ -103,7 +103,7 @@ class RunStore:
         """Check that there is disk space, before the work whose result needs it.
 
         Args:
-            size: of what is to be stored [bytes]; by default that of one more run.
+            size: size of the data that are to be stored [bytes]; by default that of one more run.
 
         Raises:
             StorageFull: if there is too little.
@@ -335,7 +335,7 @@ class RunStore:
         return decode_run(_with_progress(row, unchanged), self.kinds)
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> None:
-        """Set how much is done and the estimated time left [s].
+        """Set the progress of a run and the estimated time left [s].
 
         Readers of this store see it at once; it is durable within a second.
 
@@ -352,7 +352,7 @@ class RunStore:
             self.database.write(work)
 
     def delete(self, run_id: str) -> None:
-        """Delete an ended run with its curve, artifacts and what else there is of it.
+        """Delete an ended run with its curve, artifacts and other data.
 
         Raises:
             NotFound: if there is no such run.
@@ -386,11 +386,11 @@ class RunStore:
         Replaces the file that had this name.
 
         Args:
-            run_id: of the run.
-            name: of the file.
-            data: all of it, or chunks.
-            size: of chunks, about [bytes].
-            **fields: of the run.
+            run_id: id of the run.
+            name: name of the file.
+            data: all of its content, or chunks of it.
+            size: approximate total size of chunks [bytes].
+            **fields: fields of the run that are set.
 
         Raises:
             NotFound: if there is no such run.
