@@ -139,7 +139,7 @@ class Job:
         self.process.send(Command("resume"))
 
     def stop(self) -> None:
-        """Stop after the current step and keep the results so far; kill a run that has not begun."""
+        """Stop after the current step, keeping the results; kill a run that has not begun."""
         self.stopping = True
         if self._has_begun:
             self.process.send(Command("stop"))
