@@ -1,4 +1,4 @@
-"""The features of one app, and what the core asks all of them."""
+"""The features of one app, and the calls of the core to all of them."""
 
 import logging
 from collections.abc import Collection, Iterable, Iterator

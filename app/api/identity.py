@@ -1,8 +1,8 @@
-"""Identities: clients who are no operators, but of whom a feature knows more than that they watch.
+"""Identities: clients who are no operators, but whom a feature identifies, as by a cookie.
 
-A feature that knows people by a cookie has an `IdentityProvider`, which the guards ask of each
-client who is no operator. What an identity may do beyond a spectator, or may not, it decides itself
-by the access of the route and the parameters of the request.
+Such a feature has an `IdentityProvider`, which the guards call for each client who is no operator.
+An identity decides what it may do beyond a spectator, or may not, by the access of the route and
+the parameters of the request.
 """
 
 from collections.abc import Iterator, Mapping
@@ -20,7 +20,7 @@ class Identity(Protocol):
 
     @property
     def page_role(self) -> str:
-        """Role of the client's pages, which show by it what the client can do."""
+        """Role of the client, by which its pages show the permitted actions."""
         ...
 
     def allowance_key(self, scope: Scope) -> str | None:

@@ -1,4 +1,4 @@
-"""Routes of trainings: import, learning curve and Q-table. What starts one is in `starts`."""
+"""Routes of trainings: import, disturbance, learning curve and Q-table; see also `starts`."""
 
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal

@@ -80,7 +80,7 @@ class RaceConfigView(RaceConfig):
 
 
 class ProgressView(Answer):
-    """Progress: steps of a training or of all lanes of a race, or what else a kind counts."""
+    """Progress: steps of a training or of all lanes of a race; other kinds count other things."""
 
     done: Count
     total: Count
@@ -113,7 +113,10 @@ class RunView(Answer):
 
 
 class Change(Answer):
-    """A change while it ran, and the step after which it applies; what stayed is left out."""
+    """A change of a running training, and the step after which it applies.
+
+    Fields that did not change are left out.
+    """
 
     step: Count
     pace: NewPace = None
@@ -132,7 +135,7 @@ class TrainingView(RunView):
 
 
 class RaceView(RunView):
-    """A race. `best_known_m` is null where it was not computed, or something happens in between."""
+    """A race. `best_known_m` is null where it was not computed, as of worlds that change."""
 
     kind: Literal["race"] = field()
     config: RaceConfigView
@@ -156,8 +159,8 @@ def view_of(run: AnyRun, queue_position: int | None = None) -> RunView | Damaged
     """Return the view of a run; that of a damaged one has its readable fields and the reason.
 
     Args:
-        run: in its present state.
-        queue_position: of a queued run, 1 for the next to start; None for others.
+        run: the run in its present state.
+        queue_position: position of a queued run, 1 for the next to start; None for others.
     """
     if isinstance(run, DamagedRun):
         return DamagedRunView(

@@ -157,7 +157,7 @@ class Job:
             self.process.kill()
 
     def tune(self, changes: Mapping[str, Any], within_s: float) -> Acknowledgement:
-        """Change learning rates or pace, or let something happen, after the current step.
+        """Change settings or pace, or disturb the training, after the current step.
 
         Args:
             changes: values of settings by name, or `disturbance` in plain types.

@@ -1,4 +1,4 @@
-"""State machine of the stage: which run is shown and why, how far its picture is, what follows.
+"""State machine of the stage: the run shown, why, the progress of its picture, and the playlist.
 
 It is pure: it knows no clock, no recording and no store. `Stage` reports events to it and shows
 what it says; what the page says of the stage follows from it (`static/js/narrative/narrative.js`).

@@ -64,7 +64,7 @@ class Session:
 
     Args:
         websocket: accepted websocket.
-        view: what the browser follows at first.
+        view: view that the browser has at first.
         counters: counters of the hub, updated here.
         catch_up: makes a catch-up frame.
     """
@@ -109,7 +109,7 @@ class Session:
         self._wake.set()
 
     def forget(self) -> None:
-        """Drop queued frames, and forget what the browser has: it shows something else."""
+        """Drop queued frames and the browser's version, as its page shows another thing."""
         self.version = None
         self._queue.clear()
         self._is_lagging = False

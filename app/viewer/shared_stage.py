@@ -1,4 +1,4 @@
-"""A stage with all by which many people watch it: viewer, events, roles and address."""
+"""A stage with viser, hub, event channel, roles and path, shared by many clients."""
 
 import asyncio
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ from hexapods.drawing.viser_internals.server import in_process_viser
 
 
 class SharedStage:
-    """A stage, viser that draws it, the hub that relays the picture, and who may watch and operate.
+    """A stage, viser that draws it, the hub that relays the picture, and the roles of clients.
 
     Several may be in one process, beside each other: they share the runs, their recordings and the
     bus, and the slots for viewers. Within `async with` viser, the drawing thread and the hub run.

@@ -133,7 +133,7 @@ async def open_room(
 def list_rooms(
     services: ServicesDep, request: Request, reader: ReaderDep
 ) -> RecordResponse[RoomList]:
-    """Return all rooms to operators, and to participants those in which they are."""
+    """Return all rooms to operators, and their own rooms to participants."""
     codes = None if reader is None else set(dict(reader))
     items = [
         ListedRoom(

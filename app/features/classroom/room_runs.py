@@ -36,7 +36,7 @@ class RoomRuns:
         self._store, self._rows = store, RoomRows(store.database)
         self._runs: dict[str, RoomRun] = {}
         self._unread: set[str] = set()
-        """Ids of the runs whose rows are damaged: it is not known to whom they are shown."""
+        """Ids of runs whose rows are damaged; they are hidden from all but operators."""
 
     def load(self, rooms: Mapping[str, Room]) -> None:
         """Load the runs of the participants of rooms, by code; those of other rooms stay hidden."""
@@ -82,7 +82,7 @@ class RoomRuns:
         """Whether a run is hidden from a reader who is no operator.
 
         Args:
-            run_id: of the run; None for none.
+            run_id: id of the run; None for none.
             reader: the participants that the reader is.
         """
         if run_id in self._unread:

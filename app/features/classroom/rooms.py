@@ -38,7 +38,7 @@ from hexapods.domain.errors import HexapodError
 MAX_OPEN = 16
 """Rooms that are open at once; each has a stage of its own."""
 IDLE = timedelta(days=1)
-"""A room in which nothing has happened for so long is ended where another needs its place."""
+"""Time without any action after which a room may be ended to open another."""
 _RETRY_S = 60
 _logger = logging.getLogger(__name__)
 _EMPTY: Mapping[str, Any] = {
@@ -147,7 +147,7 @@ class Rooms:
         """Open a room.
 
         Args:
-            found: its lesson, stored or not; None for one without.
+            found: lesson of the room, stored or not; None for none.
             needs_approval: whether others see of a participant only what was approved.
 
         Raises:
@@ -590,7 +590,7 @@ class Rooms:
         """Whether a run is hidden from a reader who is no operator.
 
         Args:
-            run_id: of the run; None for none.
+            run_id: id of the run; None for none.
             reader: the participants that the reader is.
         """
         return self._runs.is_hidden(run_id, reader)

@@ -30,7 +30,7 @@ class Cleaner(Protocol):
 
 
 class Expiry:
-    """Deletes what visitors of a demo have made once it is a day old, with all that belongs to it.
+    """Deletes the runs of visitors of a demo once they are a day old, with all of their data.
 
     A run that another needs stays only while that one waits in the queue: when it starts, it has
     loaded what it needs. What has ended has its own recordings and tables, and loses nothing.

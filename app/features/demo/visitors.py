@@ -188,9 +188,9 @@ class Visitors:
         another visitor meanwhile, as the cookie of that start was lost, is given it.
 
         Args:
-            key: of the cookie; "" without one.
+            key: key of the cookie; "" without one.
             request_key: idempotency key of the request; None without one.
-            run_id: of the run that was made by the first of these requests.
+            run_id: id of the run that was made by the first of these requests.
         """
         requested = _key_of(request_key)
         with self._lock:

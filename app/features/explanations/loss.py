@@ -31,7 +31,7 @@ from hexapods.runs.seeding import RACING
 from hexapods.runs.walker import Sensors
 
 BETTER_M = 0.001
-"""A move is better than the one that was made if it brings so much more in this step [m]."""
+"""Minimum additional reward in a step of a move that counts as better than the one made [m]."""
 LIMIT_S = 20.0
 """Processor time that the simulation of a lane's moves may take [s]."""
 PassedOver = Literal["untried", "undervalued", "not chosen"]

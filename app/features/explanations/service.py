@@ -81,7 +81,7 @@ class Explanations:
         Args:
             run_id: id of the run.
             step: counted from 1; None for the newest.
-            lane: of a race, counted from 0; 0 for a training.
+            lane: lane of a race, counted from 0; 0 for a training.
 
         Returns:
             the explanation as JSON.

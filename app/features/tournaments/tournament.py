@@ -87,7 +87,7 @@ class TournamentEntry:
 
 
 class TournamentEvent(Answer):
-    """A tournament has changed; `GET /tournaments/{tournament_id}` has it.
+    """A tournament has changed; `GET /tournaments/{tournament_id}` returns it.
 
     Attributes:
         entries: number of its entries, without the references.

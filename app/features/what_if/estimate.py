@@ -173,7 +173,7 @@ def _one_per_class_first(kinds: Iterable[TimedSteps]) -> list[TimedSteps]:
 
 
 def _kind(config: TrainingConfig) -> TimedSteps:
-    """Return the kind of a config's steps, without what their time does not depend on."""
+    """Return the kind of a config's steps: only the fields on which their time depends."""
     common = replace(config, seed=0, evaluate_every=0, pace="max", tolerance=0.0)
     practises = learns(config.agent)
     return TimedSteps(replace(common, world=config.world.at_start, steps=200), practises)

@@ -34,7 +34,7 @@ _ESTIMATES: Mapping[str, tuple[str, str]] = {
         "Time a few steps of each lane, and extrapolate; not for a race that branches off.",
     ),
 }
-"""By kind of run of the core: what is estimated, for the summary, and a description."""
+"""By kind of run of the core: its name in the summary of the route, and the description."""
 
 
 def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
@@ -106,7 +106,7 @@ def estimate_routes(start: StartKind) -> APIRouter:
 
 
 def spectator(services: Services, client: str) -> WhatIfRequester:
-    """Return a spectator as the requester of a what-if, charged for what it takes beyond a second.
+    """Return a spectator as the requester of a what-if, charged for its time beyond a second.
 
     Args:
         services: services of the core.

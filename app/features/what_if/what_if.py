@@ -168,7 +168,7 @@ class WhatIf:
     def _run_trials(
         self, missing: Sequence[TrialConfig], check: Callable[[], None], limit_s: float
     ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
-        """Return the distances of all seeds of each trial [m], and what they cost [s]."""
+        """Return the distances of all seeds of each trial [m], and their cost [s]."""
         trials = [(trial, seeded) for trial in missing for seeded in _with_seeds(trial)]
         seeded_trials = [seeded for _, seeded in trials]
         limit_s *= self._pool.count

@@ -30,7 +30,7 @@ from hexapods.files import is_disk_full, write_atomically
 UPLOAD_ENDING = ".upload"
 """Ending of the files that robots were read from."""
 FOUND_ENDING = ".found"
-"""Ending of the descriptions of what was found in these files, in JSON."""
+"""Ending of the files with the findings in these files, in JSON."""
 _ENDINGS = (ENDING, UPLOAD_ENDING, FOUND_ENDING)
 # From the time [ms], so that versions increase across restarts of the server.
 _versions = itertools.count(time.time_ns() // 1_000_000)
@@ -97,7 +97,7 @@ class RobotStore:
         return [robot for robot in robots if hidden or not robot.hidden]
 
     def readable(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
-        """Return those of `stored` whose documents can be read; others are logged."""
+        """Return the robots of `stored` whose documents can be read; others are logged."""
         stored = self.stored(hidden=hidden)
         damaged = damaged_robots(stored)
         for robot in stored:

@@ -100,7 +100,7 @@ class RunStore:
         self.is_public: ColumnElement[bool] | None = None
 
     def check_disk_space(self, size: int = START_BYTES) -> None:
-        """Check that there is disk space, before the work whose result needs it.
+        """Check that there is disk space, before work whose result is stored.
 
         Args:
             size: size of the data that are to be stored [bytes]; by default that of one more run.
