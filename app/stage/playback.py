@@ -111,7 +111,7 @@ class StoredReplay(Replay):
         run: the run as it was when the replay was asked for.
         show: its show.
         ghost: see `Replay`.
-        held: its recordings; None while the run is computed.
+        recordings: its recordings; None while the run is computed.
     """
 
     def __init__(

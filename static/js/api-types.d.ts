@@ -350,7 +350,7 @@ export interface Reveal {
   answer: number | string | null;
 }
 /**
- * The results of a card, as who asks may see them.
+ * The results of a card, as far as the reader may see them.
  */
 export interface CardResultsView {
   card: number;
@@ -370,16 +370,16 @@ export interface CardResultsView {
    */
   finished: number;
   /**
-   * before the reveal a participant's own alone.
+   * entries of the participants; before the reveal a participant gets their own alone.
    */
   entries: ResultEntry[];
   /**
-   * of all seeds, shortest first; empty before the reveal but for a teacher.
+   * distances of all seeds, shortest first; before the reveal for a teacher alone.
    */
   distances_m: number[];
   interval: IntervalView | null;
   /**
-   * what the lesson gives as the answer.
+   * answer that the lesson gives; null before the reveal, but for a teacher.
    */
   answer: number | string | null;
 }
@@ -389,13 +389,13 @@ export interface CardResultsView {
 export interface ResultEntry {
   seed: number;
   /**
-   * null where it is not to be seen.
+   * name of the participant; null where it is hidden from the reader.
    */
   name: string | null;
   is_own: boolean;
   prediction: JsonValue;
   /**
-   * of the prediction; for participants after the reveal.
+   * score of the prediction; participants get it after the reveal.
    */
   score: Score | null;
   run: RunOutcome | null;
@@ -426,19 +426,19 @@ export interface Score {
  */
 export interface RunOutcome {
   /**
-   * of the run; of a what-if that of its record.
+   * id of the run, or of the record of a what-if.
    */
   id: string;
   kind: ("training" | "race" | "experiment") | "what-if";
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   /**
-   * settings that they gave, by name.
+   * settings that the participant gave, by name.
    */
   given: {
     [k: string]: unknown;
   };
   /**
-   * how far the robot walked; of a race the learner, at time-out; of a what-if the interquartile mean with the chosen settings.
+   * distance that the robot walked; of a race that of the learner at time-out; of a what-if the interquartile mean with the chosen settings.
    */
   distance_m: number | null;
   /**
@@ -446,11 +446,11 @@ export interface RunOutcome {
    */
   winners: string[];
   /**
-   * among the seeds, 1 for the longest distance; null before the reveal.
+   * rank among the seeds, 1 for the longest distance; null before the reveal.
    */
   rank: number | null;
   /**
-   * of one's own what-if.
+   * answer of the reader's own what-if; null for other runs.
    */
   answer: ComparisonView | null;
 }
@@ -496,7 +496,9 @@ export interface CardTexts {
   reveal: string;
 }
 /**
- * A change while it ran, and the step after which it applies; what stayed is left out.
+ * A change of a running training, and the step after which it applies.
+ *
+ * Fields that did not change are left out.
  */
 export interface Change {
   step: number;
@@ -1128,7 +1130,7 @@ export interface TrainingView {
   is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   /**
-   * whether its state allows it; what it needs may have been deleted, or a stopped training's table used since.
+   * whether its state allows `resume`, which is still refused if a run that it needs was deleted, or if a stopped training's table has been used since.
    */
   can_resume: boolean;
   queue_position: number | null;
@@ -1147,7 +1149,7 @@ export interface TrainingView {
   changes: Change[];
 }
 /**
- * Progress: steps of a training or of all lanes of a race, or what else a kind counts.
+ * Progress: steps of a training or of all lanes of a race; other kinds count other things.
  */
 export interface ProgressView {
   done: number;
@@ -1330,7 +1332,7 @@ export interface TrainingResult {
   fell_at_step?: number | null;
 }
 /**
- * A race. `best_known_m` is null where it was not computed, or something happens in between.
+ * A race. `best_known_m` is null where it was not computed, as of worlds that change.
  */
 export interface RaceView {
   id: string;
@@ -1341,7 +1343,7 @@ export interface RaceView {
   is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   /**
-   * whether its state allows it; what it needs may have been deleted, or a stopped training's table used since.
+   * whether its state allows `resume`, which is still refused if a run that it needs was deleted, or if a stopped training's table has been used since.
    */
   can_resume: boolean;
   queue_position: number | null;
@@ -1604,7 +1606,7 @@ export interface ExperimentView {
   is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   /**
-   * whether its state allows it; what it needs may have been deleted, or a stopped training's table used since.
+   * whether its state allows `resume`, which is still refused if a run that it needs was deleted, or if a stopped training's table has been used since.
    */
   can_resume: boolean;
   queue_position: number | null;
@@ -2023,15 +2025,15 @@ export interface RoomEvent {
    */
   revealed: number[];
   /**
-   * number of those who are in it.
+   * number of participants who are in the room.
    */
   participants: number;
   /**
-   * number of those who have answered the card that is shown.
+   * number of participants who have answered the card that is shown.
    */
   predicted: number;
   /**
-   * number of those who have started a run on it.
+   * number of participants who have started a run on it.
    */
   started: number;
   /**
@@ -2041,7 +2043,7 @@ export interface RoomEvent {
   needs_approval: boolean;
 }
 /**
- * A tournament has changed; `GET /tournaments/{tournament_id}` has it.
+ * A tournament has changed; `GET /tournaments/{tournament_id}` returns it.
  */
 export interface TournamentEvent {
   id: string;
@@ -2293,12 +2295,12 @@ export interface ExportOption {
   install: string | null;
 }
 /**
- * Findings in the file of a robot, from which a person may choose otherwise.
+ * Findings in the file of a robot, which a person may correct.
  */
 export interface FoundView {
   file_format: "mjcf" | "urdf";
   /**
-   * path in the zip of what was read; null if it was given alone.
+   * path in the zip of the file that was read; null if it was not in a zip.
    */
   file: string | null;
   /**
@@ -2306,7 +2308,7 @@ export interface FoundView {
    */
   legs: ImportedLeg[];
   /**
-   * names in the file of all that could be the foot of a leg.
+   * names in the file of all parts that could be the foot of a leg.
    */
   feet: string[];
   /**
@@ -2340,7 +2342,7 @@ export interface ImportedLeg {
  */
 export interface GaitAnalysis {
   /**
-   * of the run.
+   * part of the run that is analysed.
    */
   part: "race" | "practice" | "evaluation";
   /**
@@ -2348,7 +2350,7 @@ export interface GaitAnalysis {
    */
   step_s: number;
   /**
-   * of a race all, of a training one.
+   * all lanes of a race, or the one of a training.
    */
   lanes: GaitLane[];
 }
@@ -2357,19 +2359,19 @@ export interface GaitAnalysis {
  */
 export interface GaitLane {
   /**
-   * its agent.
+   * name of its agent.
    */
   agent: string;
   /**
-   * robot time of what is recorded.
+   * robot time at the beginning and at the end of the recording.
    */
   recorded_from_s: number;
   /**
-   * robot time of what is recorded.
+   * robot time at the beginning and at the end of the recording.
    */
   recorded_to_s: number;
   /**
-   * of the window.
+   * figures of the gait within the window.
    */
   figures: GaitFigures | null;
   /**
@@ -3774,15 +3776,15 @@ export interface RoomView {
    */
   revealed: number[];
   /**
-   * number of those who are in it.
+   * number of participants who are in the room.
    */
   participants: number;
   /**
-   * number of those who have answered the card that is shown.
+   * number of participants who have answered the card that is shown.
    */
   predicted: number;
   /**
-   * number of those who have started a run on it.
+   * number of participants who have started a run on it.
    */
   started: number;
   /**
@@ -3896,11 +3898,11 @@ export interface SpectatorsView {
  */
 export interface StoredLeg {
   /**
-   * its number, from 1.
+   * number of the leg, from 1.
    */
   leg: number;
   /**
-   * where it is on the torso, anticlockwise from body x.
+   * direction of its place on the torso, anticlockwise from body x.
    */
   azimuth_deg: number;
   /**
@@ -3913,7 +3915,7 @@ export interface StoredLeg {
  */
 export interface StoredRobotView {
   /**
-   * of its content: the same robot has the same id on every server.
+   * id of its content: the same robot has the same id on every server.
    */
   id: string;
   /**
@@ -3925,7 +3927,7 @@ export interface StoredRobotView {
    */
   hidden: boolean;
   /**
-   * one that suits it.
+   * gait that suits the robot.
    */
   gait:
     | (
@@ -4577,13 +4579,13 @@ export interface VisitorView {
   runs: string[];
 }
 /**
- * A stored robot with all its numbers, and what is known of it before it walks.
+ * A stored robot with all its numbers, and a preview of its walk.
  *
- * That is a preview with its gait, on a foot grid that suits its size.
+ * The preview is with its gait, on a foot grid that suits its size.
  */
 export interface WholeRobotView {
   /**
-   * of its content: the same robot has the same id on every server.
+   * id of its content: the same robot has the same id on every server.
    */
   id: string;
   /**
@@ -4595,7 +4597,7 @@ export interface WholeRobotView {
    */
   hidden: boolean;
   /**
-   * one that suits it.
+   * gait that suits the robot.
    */
   gait:
     | (
@@ -4645,14 +4647,14 @@ export interface WholeRobotView {
   groups: number[][];
   legs: StoredLeg[];
   /**
-   * by value, as a request may have it.
+   * the robot by value, as a request may have it.
    */
   robot: {
     [k: string]: unknown;
   };
   preview: Preview;
   /**
-   * what was found in its file; null if it was made here.
+   * findings in its file; null if it was made here.
    */
   found: FoundView | null;
 }
