@@ -2,8 +2,7 @@
 import { listed, sentence, whole } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
 import { builtPart, kindFor, kindNamed, legIn } from "./robots.js";
-import { fieldBeside, mistakeIn } from "./settings.js";
-import { options } from "./options.js";
+import { fieldBeside, mistakeIn, options } from "./settings.js";
 
 /** @import { Parsed } from "./parse.js" */
 /** @import { Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run } from "./types.js" */

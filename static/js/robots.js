@@ -1,6 +1,6 @@
 // Robots as forms and runs have them: the name of a preset or the id of a stored robot, or an object with either and
 // what differs from it.
-import { options } from "./options.js";
+import { options } from "./settings.js";
 
 /** @import { FieldOption, Gait, GaitConfig, Robot, RobotConfig } from "./types.js" */
 

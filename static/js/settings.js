@@ -1,9 +1,18 @@
-// Settings as the server declares them: their controls, names and limits, and those of each agent.
+// What the server offers, its options; and the settings among them: their controls, names and limits, and those of each
+// agent.
 import { computed, signal } from "@preact/signals";
 import { sentence, whole } from "./format.js";
-import { options, served } from "./options.js";
 
-/** @import { Agent, Bounds, FieldOption, Limits, SettingOption, SettingValue } from "./types.js" */
+/** @import { Signal } from "@preact/signals" */
+/** @import { Agent, Bounds, FieldOption, Limits, Options, SettingOption, SettingValue } from "./types.js" */
+
+/** Null until the server has answered. A page without a server has it in itself. @type {Signal<Options | null>} */
+export const options = signal(null);
+/** The options, for code that runs only once they are known: components, and what they call. */
+export const served = () => /** @type {Options} */ (options.value);
+/** The entry of a list of options that has a name; undefined where there is none. */
+/** @type {<Entry extends { name: string }>(entries: Entry[] | undefined, name: string) => Entry | undefined} */
+export const optionNamed = (entries, name) => entries?.find((entry) => entry.name === name);
 
 /**
  * The kind of control that a setting needs.

@@ -2,12 +2,12 @@
 // overtaken.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { addressOf, getOptions, RequestError } from "./api.js";
-import { options } from "./options.js";
+import { options } from "./settings.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { DamagedRun, Evaluation, EventBodies, Rates, Run, Scene, Stage } from "./types.js" */
 
-export { options, served } from "./options.js";
+export { options, served } from "./settings.js";
 
 /** @type {Signal<"connecting" | "live" | "reconnecting">} */
 export const connection = signal("connecting");

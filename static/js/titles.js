@@ -2,8 +2,7 @@
 import { worldTitle } from "./disturbances.js";
 import { sentence } from "./format.js";
 import { customRobotInWords, offered, partInWords, presetOf, storedName } from "./robots.js";
-import { agentOf, choiceTitle, shortTitle, titleOf } from "./settings.js";
-import { options } from "./options.js";
+import { agentOf, choiceTitle, options, shortTitle, titleOf } from "./settings.js";
 
 /** @import { Described, GaitConfig, RobotConfig } from "./types.js" */
 

@@ -121,7 +121,7 @@ def test_the_command_line_has_options_for_its_settings(command: str) -> None:
         env={**os.environ, "COLUMNS": "200"},
     ).stdout
     assert "--patience" in said
-    assert "How long it waits. Valid: a number from 0 to 1 (default 0.25)" in said
+    assert "How long it waits. [from 0 to 1; default 0.25]" in said
 
 
 def test_a_value_out_of_its_limits_is_refused(client: httpx2.Client) -> None:

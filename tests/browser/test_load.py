@@ -61,5 +61,5 @@ def test_a_first_visit_transfers_little(dashboard: Dashboard, server: Serving) -
     scripts = [path for path in paths if path.endswith(".js")]
     assert "/static/js/main.js" in scripts
     assert len({*scripts}) == len(scripts)
-    assert len(paths) <= MAX_REQUESTS, paths
+    assert len(paths) <= MAX_REQUESTS, "\n".join(paths)
     assert traffic.total_bytes <= MAX_BYTES

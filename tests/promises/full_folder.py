@@ -63,6 +63,7 @@ def fill(store: RunStore, copies: int) -> None:
     ended_experiment(store, EXPERIMENT)
     store.create(training("00000000000k1"), key=IdempotencyKey("a key", 64 * "b"))
     store.change("00000000000k1", {"queued"}, "stopped")
+    store.baselines.add(64 * "c", 0.5)
     Sessions(store.sessions, TOKEN).open()
     _add_robots(store, copies)
     Lessons(LessonRows(store.database)).add(lesson("A lesson"))

@@ -349,7 +349,8 @@ def test_events_report_only_the_participants_own_runs(server: Serving) -> None:
         received = []
         for line in lines:
             received.append(line)
-            if runs[1] in line and '"state": "finished"' in line:
+            data = json.loads(line.removeprefix("data: ")) if line.startswith("data: {") else {}
+            if (data.get("id"), data.get("state")) == (runs[1], "finished"):
                 break
     assert not [line for line in received if runs[0] in line]
     assert any(line == "event: room" for line in received)

@@ -7,9 +7,9 @@ import { count, duration, whole } from "../../js/format.js";
 import { page } from "../../js/page-state.js";
 import { customRobotInWords, presetOf, storedName } from "../../js/robots.js";
 import { everyRun, isActive } from "../../js/selectors.js";
-import { connection, options, setEntry } from "../../js/store.js";
+import { optionNamed, options } from "../../js/settings.js";
+import { connection, setEntry } from "../../js/store.js";
 import { fieldTitle, observationTitle, rewardInWords, simulatorTitle } from "../../js/titles.js";
-import { experimentKind } from "./kinds.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Feature, Run } from "../../js/types.js" */
@@ -56,7 +56,8 @@ const describe = ({ config }) => {
     customRobotInWords(robot) ?? storedName(robot) ?? presetOf(robot) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
-    ...(experimentKind(config.experiment)?.takes_settings ? sweptIn(config) : []), worldsIn(config).join(", "),
+    ...(optionNamed(options.value?.experiments, config.experiment)?.takes_settings ? sweptIn(config) : []),
+    worldsIn(config).join(", "),
     count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
     config.tolerance ? `${settingTitle("tolerance")} ${config.tolerance}` : "",
     config.reward === "track" ? rewardInWords(config.reward) : "", simulatorTitle(config.simulator),

@@ -2,7 +2,7 @@
 // complete without a server, and asks for nothing.
 import { render } from "preact";
 import { html } from "../../js/components/elements.js";
-import { options } from "../../js/options.js";
+import { options } from "../../js/settings.js";
 import { Findings } from "./components/all-findings.js";
 import { followPrinting } from "./printing.js";
 import { configInWords, findingIn } from "./words.js";

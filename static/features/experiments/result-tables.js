@@ -4,9 +4,8 @@ import { gaitsOf, greedyIn, placeOf } from "./distances.js";
 import { experimentKind } from "./kinds.js";
 import { bestKnownCell, endOfStrips, fixedCell, NONE, shareCell, stripCell } from "./result-cells.js";
 import { decision, metres, percentage, sentence, whole } from "../../js/format.js";
-import { served } from "../../js/options.js";
+import { agentOf, served } from "../../js/settings.js";
 import { largest } from "../../js/scale.js";
-import { agentOf } from "../../js/settings.js";
 import {
   agentTitle, fieldsInWords, fieldTitle, gaitTitle, observationTitle, robotTitle, variedFields,
 } from "../../js/titles.js";

@@ -7,8 +7,7 @@ import { paperTable, SETTINGS_TITLE, settingsTable } from "./result-tables.js";
 import { isRecovery, overviewTable, UNTIL, worldTables } from "./result-worlds.js";
 import { worldTitle } from "../../js/disturbances.js";
 import { percentage, sentence } from "../../js/format.js";
-import { served } from "../../js/options.js";
-import { agentOf } from "../../js/settings.js";
+import { agentOf, served } from "../../js/settings.js";
 
 /** @import { CurveChart, Level } from "./result-curves.js" */
 /** @import { Table } from "./result-tables.js" */

@@ -1,7 +1,7 @@
 // An experiment in few words: its state, what is the same in all its trials, and what came of it as the server says.
 import { count, duration, listed, percentage, sentence, whole, withGroupedDigits } from "../../js/format.js";
 import { customRobotInWords, presetOf, storedName } from "../../js/robots.js";
-import { served } from "../../js/options.js";
+import { served } from "../../js/settings.js";
 import { agentTitle, gaitTitle, observationTitle, rewardInWords, simulatorTitle } from "../../js/titles.js";
 import { experimentKind } from "./kinds.js";
 

@@ -5,15 +5,13 @@ import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { cssColour, LineLabels, MarkLines, placeCaptions, roomFor, widthOf } from "./line-labels.js";
 import { isProjected } from "../page.js";
 import { thinned, ticks } from "../scale.js";
-import { served } from "../options.js";
+import { served } from "../settings.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
-import { FileMenu } from "./file-menu.js";
 
 /** @import { ComponentChildren } from "preact" */
 /** @import { Line, Mark, Range } from "../chart.js" */
 /** @import { Axis } from "./crosshair.js" */
-/** @import { FileKind } from "./file-menu.js" */
 /** @import { Frame } from "./line-labels.js" */
 /** @import { Toggled } from "../types.js" */
 
@@ -327,3 +325,35 @@ export const Empty = ({ words, shape = "curve" }) => html`
     <p>${words}</p>
   </div>
 `;
+
+// ---- the menu of a picture, with its downloads
+
+/** @typedef {"png" | "svg" | "csv"} FileKind */
+
+/** @type {Record<FileKind, string>} */
+const DOWNLOADS = { png: "Download as PNG", svg: "Download as SVG", csv: "Download its numbers as CSV" };
+
+/**
+ * `children` come before the downloads.
+ * @param {{
+ *   label: string, kinds: FileKind[], save: (kind: FileKind) => Promise<unknown>, children?: ComponentChildren
+ * }} props
+ */
+export function FileMenu({ label, kinds, save, children }) {
+  const [problem, setProblem] = useState("");
+  /** @param {FileKind} kind */
+  const download = (kind) => {
+    setProblem("");
+    save(kind).catch(() => setProblem("The file could not be made. Load the page again."));
+  };
+  return html`
+    <details class="menu chart-menu">
+      <summary class="quiet square small" aria-label=${label}>⋯</summary>
+      <div class="menu-body">
+        ${children}
+        ${kinds.map((kind) => html`<button class="quiet" onClick=${() => download(kind)}>${DOWNLOADS[kind]}</button>`)}
+        ${problem && html`<p class="bad" role="alert">${problem}</p>`}
+      </div>
+    </details>
+  `;
+}

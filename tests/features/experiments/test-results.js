@@ -4,7 +4,7 @@ import { beforeEach, test } from "node:test";
 import { unit } from "../../../static/features/experiments/distances.js";
 import { pooledTable, timedTable, versusTable } from "../../../static/features/experiments/result-tables.js";
 import { overviewOf, resultOf } from "../../../static/features/experiments/results.js";
-import { options } from "../../../static/js/options.js";
+import { options } from "../../../static/js/settings.js";
 import { OPTIONS } from "../../page/options.js";
 
 /** @import { Table } from "../../../static/features/experiments/result-tables.js" */

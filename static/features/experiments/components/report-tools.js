@@ -1,8 +1,7 @@
 // Tools over a report's figures: the choice of place and unit, and the legend of dot strips.
 import { unit, UNITS } from "../distances.js";
 import { sentence } from "../../../js/format.js";
-import { agentOf } from "../../../js/settings.js";
-import { options } from "../../../js/options.js";
+import { agentOf, options } from "../../../js/settings.js";
 import { observationTitle, robotTitle } from "../../../js/titles.js";
 import { html, Segments } from "../../../js/components/elements.js";
 

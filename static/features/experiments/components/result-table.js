@@ -3,11 +3,11 @@ import { useRef, useState } from "preact/hooks";
 import { count } from "../../../js/format.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html } from "../../../js/components/elements.js";
-import { FileMenu } from "../../../js/components/file-menu.js";
+import { FileMenu } from "../../../js/components/charts.js";
 import { isPrinting } from "../printing.js";
 
 /** @import { OnSeed } from "./all-findings.js" */
-/** @import { FileKind } from "../../../js/components/file-menu.js" */
+/** @import { FileKind } from "../../../js/components/charts.js" */
 /** @import { Cell, Strip } from "../result-cells.js" */
 /** @import { Column, Row, Table } from "../result-tables.js" */
 /** @import { ComponentChildren } from "preact" */
