@@ -2,9 +2,8 @@
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
-import { Part } from "../../static/js/components/parts.js";
 import {
-  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, partsOf,
+  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, Part, partsOf,
 } from "../../static/js/features.js";
 import { change, ignored, page, read } from "../../static/js/page-state.js";
 import { applyEvent, eventNames } from "../../static/js/store.js";

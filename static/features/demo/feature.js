@@ -1,7 +1,7 @@
 // A demo that is open to strangers: each visitor starts runs of their own. It is loaded on their pages alone.
 import { computed, signal } from "@preact/signals";
 import { html } from "../../js/components/elements.js";
-import { Loaded } from "../../js/components/parts.js";
+import { Loaded } from "../../js/features.js";
 import { role } from "../../js/store.js";
 
 /** @import { Signal } from "@preact/signals" */

@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
 import { html, Icon } from "../../js/components/elements.js";
-import { Loaded } from "../../js/components/parts.js";
+import { Loaded } from "../../js/features.js";
 import { codeInGroups } from "../../js/format.js";
 import { followTheme, nextTheme, theme, toastMessage } from "../../js/page.js";
 import { isAway, options } from "../../js/store.js";

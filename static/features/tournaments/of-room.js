@@ -1,7 +1,6 @@
 // The tournaments of a room, on the pages of the room.
 import { html } from "../../js/components/elements.js";
-import { Part } from "../../js/components/parts.js";
-import { partsOf, wantDialog, wantedDialogs } from "../../js/features.js";
+import { Part, partsOf, wantDialog, wantedDialogs } from "../../js/features.js";
 import { options } from "../../js/store.js";
 import { askForTournament } from "./list.js";
 import { presentTournaments, stateInWords, tournamentPage } from "./states.js";

@@ -2,7 +2,9 @@
 import { announcement } from "../headline.js";
 import { computed, effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { menuRows, partsOf, runRow, wantedDialogs } from "../features.js";
+import {
+  Loaded, loaded, loadPart, menuRows, Part, partsOf, runRow, Slot, wantedDialogs, withStyle,
+} from "../features.js";
 import { share } from "../actions.js";
 import { page } from "../page-state.js";
 import { clickedCell, helpIsOpen, isPhone, isProjected, nextTheme, theme, toastMessage } from "../page.js";
@@ -10,7 +12,6 @@ import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
 import { html, Icon } from "./elements.js";
-import { Loaded, loaded, loadPart, Part, Slot, withStyle } from "./parts.js";
 import { toggleHelp } from "./keyboard.js";
 import { Panel, replacement, ThumbTabs } from "./panel.js";
 import { Stage } from "./stage.js";

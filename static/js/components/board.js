@@ -16,13 +16,13 @@ import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.
 import { practisedSteps } from "../training.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon } from "./elements.js";
-import { Loaded, Slot } from "./parts.js";
+import { Loaded, Slot } from "../features.js";
 import { LearningChart } from "./learning.js";
+import { RaceChart } from "./race-chart.js";
 
 /** @import { Standing } from "../race.js" */
 /** @import { Changed, Clock, LaneConfig } from "../types.js" */
 
-const loadRaceChart = () => import("./race-chart.js").then(({ RaceChart }) => RaceChart);
 const loadFiles = () => import("./run-files.js").then(({ RunFiles }) => RunFiles);
 
 export function Board() {
@@ -35,9 +35,7 @@ export function Board() {
       ${rows ? html`<${Standings} rows=${rows} />` : html`<${StartList} />`}
       ${isAtLeast("try") && html`<${Choices} />`}
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
-      ${hasChart && (rows || !isPractice
-        ? html`<${Loaded} name="chart" load=${loadRaceChart} isQuiet />`
-        : html`<${LearningChart} />`)}
+      ${hasChart && (rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`)}
       ${rows && isToldAll() && html`
         <p class="dim fine">${narrative.value.rule}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>

@@ -14,7 +14,7 @@ import { isAway, scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import { goToField, html, Icon, ProgressBar, UnknownParts } from "./elements.js";
-import { Loaded, Slot } from "./parts.js";
+import { Loaded, Slot } from "../features.js";
 
 /** @import { Run } from "../types.js" */
 

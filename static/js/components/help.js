@@ -1,8 +1,7 @@
 // The help dialog: keys, what the page shows, and where to read on.
-import { helpOfKeys } from "../features.js";
+import { helpOfKeys, Slot } from "../features.js";
 import { helpIsOpen, shortcuts } from "../page.js";
 import { Dialog, html } from "./elements.js";
-import { Slot } from "./parts.js";
 import { explainingTab } from "../workspace.js";
 
 /** @import { Changed } from "../types.js" */

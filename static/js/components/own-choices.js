@@ -7,7 +7,7 @@ import { clock, shownRun } from "../on-stage.js";
 import { isActive, isWalk } from "../selectors.js";
 import { isAway, scene } from "../store.js";
 import { html, Icon } from "./elements.js";
-import { Slot } from "./parts.js";
+import { Slot } from "../features.js";
 
 /** @import { Run } from "../types.js" */
 

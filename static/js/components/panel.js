@@ -1,7 +1,7 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { computed } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { partsOf } from "../features.js";
+import { Loaded, Part, partsOf, Slot } from "../features.js";
 import { moveTold, narrative } from "../headline.js";
 import { phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
@@ -14,7 +14,6 @@ import {
 } from "../workspace.js";
 import { Board } from "./board.js";
 import { html, Icon } from "./elements.js";
-import { Loaded, Part, Slot } from "./parts.js";
 import { Foot } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */

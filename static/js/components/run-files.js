@@ -3,7 +3,7 @@ import { downloads } from "../files.js";
 import { shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
 import { html } from "./elements.js";
-import { Slot } from "./parts.js";
+import { Slot } from "../features.js";
 
 export function RunFiles() {
   const run = shownRun.value;

@@ -17,7 +17,7 @@ import {
 import { isAtLeast } from "../workspace.js";
 import { Beforehand } from "./beforehand.js";
 import { HexapodGlyph, html } from "./elements.js";
-import { Slot } from "./parts.js";
+import { Slot } from "../features.js";
 import {
   attributesOf, closable, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";

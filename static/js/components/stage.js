@@ -15,7 +15,7 @@ import { agentOf } from "../settings.js";
 import { isAway, runs, scene, stage } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon } from "./elements.js";
-import { Loaded } from "./parts.js";
+import { Loaded } from "../features.js";
 import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */

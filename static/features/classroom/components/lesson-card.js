@@ -7,7 +7,7 @@ import { listed } from "../../../js/format.js";
 import { isPhone } from "../../../js/page.js";
 import { isAtLeast } from "../../../js/workspace.js";
 import { html } from "../../../js/components/elements.js";
-import { Loaded, withStyle } from "../../../js/components/parts.js";
+import { Loaded, withStyle } from "../../../js/features.js";
 
 /** Whether the card of the lesson that the address names is read in full. */
 export const readerIsOpen = signal(false);

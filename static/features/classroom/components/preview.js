@@ -5,7 +5,7 @@ import { May } from "../room/allowed-settings.js";
 import { Answer, KINDS } from "../room/questions.js";
 import { useEffect } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
-import { withStyle } from "../../../js/components/parts.js";
+import { withStyle } from "../../../js/features.js";
 
 /** @import { Block, Inline } from "../lessons/markdown.js" */
 

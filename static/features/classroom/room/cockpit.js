@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { Dialog, html, Icon } from "../../../js/components/elements.js";
-import { Slot } from "../../../js/components/parts.js";
+import { Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { resultsFile } from "../api.js";
 import { PupilsWindow, Sharing } from "../components/sharing.js";

@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
 import { html } from "../../../js/components/elements.js";
-import { Loaded, withStyle } from "../../../js/components/parts.js";
+import { Loaded, withStyle } from "../../../js/features.js";
 import { followTheme } from "../../../js/page.js";
 import { Phone } from "./phone.js";
 import { followOwnRun } from "./picture.js";

@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
 import { html } from "../../../js/components/elements.js";
-import { Loaded, Slot } from "../../../js/components/parts.js";
+import { Loaded, Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";

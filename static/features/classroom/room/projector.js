@@ -3,7 +3,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { getCurves } from "../../../js/api.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Icon } from "../../../js/components/elements.js";
-import { Slot } from "../../../js/components/parts.js";
+import { Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
 import { Away } from "./join.js";

@@ -4,7 +4,7 @@ import { count } from "../../format.js";
 import { commonFacts } from "../../run-words.js";
 import { isActive } from "../../selectors.js";
 import { html } from "../elements.js";
-import { Slot } from "../parts.js";
+import { Slot } from "../../features.js";
 import { ReplayLink } from "../replay-link.js";
 import { Curves } from "./curves.js";
 import { Key } from "./key.js";

@@ -1,6 +1,6 @@
 // The details beside the list: of one run, or of all that are selected.
 import { pending, resumeRun, isShown, showOnStage } from "../../actions.js";
-import { kindOf } from "../../features.js";
+import { kindOf, Slot } from "../../features.js";
 import { isPhone } from "../../page.js";
 import { addressOf } from "../../page-state.js";
 import { closeDetails, isOfSelection, isOpenedGone, subjects } from "../../run-details.js";
@@ -9,7 +9,6 @@ import { NO_SUCH_RUN, outcomeInWords, titleOf, withResult } from "../../run-word
 import { isOperator, isWalk } from "../../selectors.js";
 import { isAway } from "../../store.js";
 import { html, Icon, ProgressBar } from "../elements.js";
-import { Slot } from "../parts.js";
 import { Problem } from "../foot.js";
 import { ReplayLink } from "../replay-link.js";
 import { Name, Notes, Tags } from "./annotations.js";

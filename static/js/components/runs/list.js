@@ -8,7 +8,7 @@ import {
 import { clearSelection, selectAll, selected, setSelected } from "../../run-selection.js";
 import { connection } from "../../store.js";
 import { html } from "../elements.js";
-import { Slot } from "../parts.js";
+import { Slot } from "../../features.js";
 import { RunRow } from "./row.js";
 
 /** @import { Group } from "../../run-groups.js" */

@@ -1,12 +1,11 @@
 // The menu of a run: all that can be done with it, and its files.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { copySettings, deleteRun, pending, runAgain } from "../../actions.js";
-import { fillersOf, kindOf, rowsOfRuns, runRow } from "../../features.js";
+import { fillersOf, kindOf, rowsOfRuns, runRow, Slot } from "../../features.js";
 import { downloads } from "../../files.js";
 import { addressOf } from "../../page-state.js";
 import { isActive, isOperator, isWalk, mayChange, mayStart } from "../../selectors.js";
 import { html } from "../elements.js";
-import { Slot } from "../parts.js";
 import { edit } from "./annotations.js";
 
 /** @import { AnyRun } from "../../runs.js" */

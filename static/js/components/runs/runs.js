@@ -9,11 +9,10 @@ import { isPhone } from "../../page.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Icon, Segments } from "../elements.js";
-import { Slot } from "../parts.js";
+import { allKinds, Slot } from "../../features.js";
 import { Details } from "./details.js";
 import { List } from "./list.js";
 import { SelectionBar } from "./selection.js";
-import { allKinds } from "../../features.js";
 
 /** @import { Changed } from "../../types.js" */
 

@@ -7,7 +7,7 @@ import { clearSelection, deletable, deleteSelected, selected, tagSelected } from
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html } from "../elements.js";
-import { Slot } from "../parts.js";
+import { Slot } from "../../features.js";
 import { Problem } from "../foot.js";
 
 /** @import { Changed } from "../../types.js" */

@@ -9,7 +9,7 @@ import { distanceOf } from "../../runs.js";
 import { isWalk } from "../../selectors.js";
 import { curveOf } from "../../training.js";
 import { html } from "../elements.js";
-import { Slot } from "../parts.js";
+import { Slot } from "../../features.js";
 import { CurvesChart } from "../compare/curves.js";
 import { RaceThem } from "../compare/race-them.js";
 import { SelectionActions } from "./selection.js";
