@@ -7,11 +7,14 @@ tells what they have in common (BREACH).
 import gzip
 import hashlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from starlette.datastructures import Headers
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import Scope
+
+_YEAR_S = 365 * 24 * 3600
 
 
 class CompressedContent:
@@ -46,28 +49,64 @@ class CompressedContent:
         is_gzipped = self._is_smaller and accepts_gzip(request.get("accept-encoding", ""))
         body, encoding_headers = self._gzipped if is_gzipped else self._plain
         headers = {**self._headers, **encoding_headers}
-        known_tags = {
-            tag.strip().removeprefix("W/") for tag in request.get("if-none-match", "").split(",")
-        }
-        if headers["ETag"] in known_tags or "*" in known_tags:
+        if is_current(request, headers["ETag"]):
             headers.pop("Content-Encoding", None)
             return Response(status_code=304, headers=headers)
         return Response(body, headers=headers, media_type=self._media_type)
 
 
-def gzipped(request: Request, content: bytes, media_type: str) -> Response:
-    """Return the response of a content that is kept compressed, to be revalidated at each use.
+@dataclass(frozen=True, kw_only=True)
+class Caching:
+    """Caching of a content by clients, and by proxies on the way.
+
+    Attributes:
+        tag: entity tag of the content; contents with the same tag are the same bytes.
+        is_immutable: whether the address of the request never has another content, so that a cache
+            need not revalidate it.
+        is_public: whether a cache may answer others with it.
+    """
+
+    tag: str
+    is_immutable: bool
+    is_public: bool
+
+    @property
+    def control(self) -> str:
+        """Value of the header `Cache-Control`."""
+        if not self.is_immutable:
+            return "no-cache"
+        return f"{'public' if self.is_public else 'private'}, max-age={_YEAR_S}, immutable"
+
+
+def gzipped(
+    request: Request, content: bytes, media_type: str, caching: Caching | None = None
+) -> Response:
+    """Return the response of a content that is stored compressed; 304 if the client's is current.
 
     Args:
         request: the request.
         content: the content, compressed with gzip.
         media_type: its type.
+        caching: how it is cached; None to request it anew at each use.
     """
+    is_gzipped = accepts_gzip(request.headers.get("accept-encoding", ""))
     headers = {"Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
-    if accepts_gzip(request.headers.get("accept-encoding", "")):
-        headers["Content-Encoding"] = "gzip"
-        return Response(content, headers=headers, media_type=media_type)
-    return Response(gzip.decompress(content), headers=headers, media_type=media_type)
+    if caching is not None:
+        # A strong entity tag identifies the bytes sent, so each encoding needs its own.
+        tag = f'"{caching.tag}{"-gzip" if is_gzipped else ""}"'
+        headers |= {"Cache-Control": caching.control, "ETag": tag}
+        if is_current(request.headers, tag):
+            return Response(status_code=304, headers=headers)
+    if not is_gzipped:
+        return Response(gzip.decompress(content), headers=headers, media_type=media_type)
+    headers["Content-Encoding"] = "gzip"
+    return Response(content, headers=headers, media_type=media_type)
+
+
+def is_current(request: Headers, tag: str) -> bool:
+    """Whether `If-None-Match` of a request has an entity tag, or `*`."""
+    tags = request.get("if-none-match", "").split(",")
+    return bool({tag, "*"} & {known.strip().removeprefix("W/") for known in tags})
 
 
 def accepts_gzip(accept_encoding: str) -> bool:

@@ -94,6 +94,7 @@ VALID: dict[str, str] = {
     "idempotency-key": f"1 to {MAX_KEY_LENGTH} printable ASCII characters without spaces",
     "level": f"a whole number from {LOWEST_LEVEL} to {HIGHEST_LEVEL}",
     "number": "a whole number, 0 or more",
+    "version": "the version of the plan, which makes a whole segment immutable",
     "settings": "an object with the agent's settings, by name",
     "format": "a format that the description of the route names",
 }

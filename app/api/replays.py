@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 from fastapi import Depends, Path, Query, Request
 from starlette.responses import Response
 
-from app.api.compression import gzipped
+from app.api.compression import Caching, gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
@@ -128,6 +128,21 @@ def get_replay_segment(
     segment: Annotated[SegmentKey, Depends(_segment_key)],
     clock: ClockQuery = "paper",
     ghost: GhostQuery = None,
+    version: Annotated[str | None, Query(max_length=64, description=VALID["version"])] = None,
 ) -> Response:
-    """Return the frames of a segment; fewer than it can have where the run still computes."""
-    return gzipped(request, services.replays.segment(run_id, clock, *segment, ghost), _MEDIA_TYPE)
+    """Return the frames of a segment; fewer than it can have where the run still computes.
+
+    A segment with all its frames has an `ETag`, and is immutable if the request has the `version`
+    of the plan: it may be stored by caches on the way, unless the run is hidden from others.
+    """
+    frames = services.replays.segment(run_id, clock, *segment, ghost)
+    if not frames.is_final:
+        return gzipped(request, frames.data, _MEDIA_TYPE)
+    shown_ids = [shown for shown in (run_id, ghost) if shown is not None]
+    is_hidden = any(services.features.is_hidden(shown, None) for shown in shown_ids)
+    caching = Caching(
+        tag=f"{frames.version}-{clock}-{segment.level}-{segment.number}",
+        is_immutable=version == frames.version,
+        is_public=not is_hidden,
+    )
+    return gzipped(request, frames.data, _MEDIA_TYPE, caching)

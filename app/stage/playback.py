@@ -4,6 +4,7 @@ The stage has one playback position for everybody. A replay (`hexapods.shows.rep
 is asked for the frame at a time, so that every page can have a position of its own.
 """
 
+import hashlib
 import json
 import threading
 from collections.abc import Callable, Sequence
@@ -127,7 +128,7 @@ class StoredReplay(Replay):
 
     @property
     def version(self) -> str:
-        """Version of the frames: it changes with all that they depend on but further steps."""
+        """Version of the frames: a hash of all that they depend on but further steps."""
         return _version_of(self.run, self.stored_ghost.run if self.stored_ghost else None)
 
     @property
@@ -259,4 +260,4 @@ def _version_of(run: Run, ghost: Run | None) -> str:
         for shown in (run, ghost)
         if shown
     ]
-    return json.dumps(runs, default=str)
+    return hashlib.sha256(json.dumps(runs, default=str).encode()).hexdigest()[:16]

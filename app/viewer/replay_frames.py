@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from app.cache import BytesCache
 from app.jobs.stopping import Stopping
@@ -17,6 +18,20 @@ from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment, ReplayView
 
 _CACHE_BYTES = 32 << 20
 _SCENE = "scene"
+
+
+class Segment(NamedTuple):
+    """Encoded frames of a segment.
+
+    Attributes:
+        data: encoding of the frames.
+        version: version of the replay's frames.
+        is_final: whether it has all its frames, so that this version of it never changes.
+    """
+
+    data: bytes
+    version: str
+    is_final: bool
 
 
 class ReplayFrames:
@@ -99,7 +114,7 @@ class ReplayFrames:
 
     def segment(
         self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None = None
-    ) -> bytes:
+    ) -> Segment:
         """Return a segment; of a run that is still computed only the frames so far.
 
         Args:
@@ -115,18 +130,18 @@ class ReplayFrames:
         """
         version = self._replays.version(run_id, ghost_id)
         if (cached := self._encodings.get((version, clock, level, number))) is not None:
-            return cached
+            return Segment(cached, version, is_final=True)
         replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
         try:
             times_s = replay.segment_times_s(level, number)
         except NoSuchSegment as error:
             raise NotFound(str(error)) from error
-        return self._encoded_once(
-            key,
-            replay.is_complete or len(times_s) == SEGMENT_FRAMES,
-            lambda: encode_frames(replay, times_s, self._stopping.check),
+        is_final = replay.is_complete or len(times_s) == SEGMENT_FRAMES
+        data = self._encoded_once(
+            key, is_final, lambda: encode_frames(replay, times_s, self._stopping.check)
         )
+        return Segment(data, replay.version, is_final)
 
     def encoded(self, run_id: str, clock: Clock) -> EncodedReplay:
         """Return all frames of a run, each encoded when it is asked for.
@@ -141,7 +156,7 @@ class ReplayFrames:
         return EncodedReplay(
             self.plan(run_id, clock),
             lambda: self.scene(run_id),
-            lambda level, number: self.segment(run_id, clock, level, number),
+            lambda level, number: self.segment(run_id, clock, level, number).data,
         )
 
     def _encoded_once(self, key: Hashable, is_final: bool, encode: Callable[[], bytes]) -> bytes:

@@ -5,10 +5,10 @@ ones what changed since the one before. So a page that has the scene (`encode_sc
 segment to be at any moment of it.
 
 An encoding, compressed with gzip, is `u32 size of the JSON, little-endian | JSON | arrays`, each
-array aligned to 8 bytes. The JSON has `lengths` of the arrays [bytes] and `frames`, each with its
-`time_s`, its viser `messages`, which name an array as viser does (`{"__binary_index": 3, "dtype":
-"<f4"}`), `follow`, the position of each view [m], and now and then `scene`, the figures of the
-moment.
+array aligned to 8 bytes. Poses of links are rounded to `POSE_STEP`. The JSON has `lengths` of the
+arrays [bytes] and `frames`, each with its `time_s`, its viser `messages`, which name an array as
+viser does (`{"__binary_index": 3, "dtype": "<f4"}`), `follow`, the position of each view [m], and
+now and then `scene`, the figures of the moment.
 """
 
 import gzip
@@ -18,6 +18,7 @@ from dataclasses import replace
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from hexapods.domain.records import to_json
 from hexapods.domain.types import Cells
@@ -26,7 +27,7 @@ from hexapods.drawing.scene import StageScene, grid_root
 from hexapods.drawing.track import WORLD
 from hexapods.drawing.viser_internals.recorder import Recorded, recorder
 from hexapods.drawing.viser_internals.server import in_process_viser
-from hexapods.drawing.viser_internals.stream import LIFECYCLES, remap_buffers
+from hexapods.drawing.viser_internals.stream import LIFECYCLES, array_index, remap_buffers
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S, Replay
 from hexapods.shows.scene_view import scene_view
 from hexapods.shows.stage_frame import StageFrame
@@ -34,7 +35,15 @@ from hexapods.shows.stage_frame import StageFrame
 _FRAMES_PER_SCENE = round(FRAMES_PER_S / SCENES_PER_S)
 _ALIGNMENT_BYTES = 8
 _HEADER = struct.Struct("<I")
-_COMPRESSION = 1
+_COMPRESSION = 6
+POSE_STEP = 2.0**-13
+"""Poses of links are multiples of this: positions [m] and components of unit quaternions.
+
+Rounded numbers have few significant bits, so that they compress to half. No position is off by more
+than 0.062 mm in a coordinate, nor a rotation by more than 0.014°: a pixel of a robot that fills a
+screen of 4,000 pixels is 0.1 mm.
+"""
+_POSES = ("batched_positions", "batched_wxyzs")
 _Frame = tuple[Recorded, dict[str, Any]]
 """Changes of a frame, and its other fields."""
 Check = Callable[[], None]
@@ -109,15 +118,11 @@ def _follow_points(frame: StageFrame, scene: StageScene) -> dict[str, tuple[floa
 
 def _encode(frames: Iterator[_Frame], **more: Any) -> bytes:
     arrays: list[memoryview] = []
-    encoded_frames = [
-        {
-            **fields,
-            "messages": [
-                remap_buffers(message, recorded.arrays, arrays) for message in recorded.messages
-            ],
-        }
-        for recorded, fields in frames
-    ]
+    encoded_frames = []
+    for recorded, fields in frames:
+        sources = _with_rounded_poses(recorded)
+        messages = [remap_buffers(message, sources, arrays) for message in recorded.messages]
+        encoded_frames.append({**fields, "messages": messages})
     lengths = [array.nbytes for array in arrays]
     header = msgspec.json.encode({**more, "lengths": lengths, "frames": encoded_frames})
     encoded = bytearray(_HEADER.pack(len(header)) + header)
@@ -125,3 +130,15 @@ def _encode(frames: Iterator[_Frame], **more: Any) -> bytes:
         encoded += bytes(-len(encoded) % _ALIGNMENT_BYTES)
         encoded += array
     return gzip.compress(bytes(encoded), compresslevel=_COMPRESSION, mtime=0)
+
+
+def _with_rounded_poses(recorded: Recorded) -> list[memoryview]:
+    """Return the arrays of messages, those of poses rounded to `POSE_STEP`."""
+    arrays = list(recorded.arrays)
+    for message in recorded.messages:
+        values = message.get("updates") or message.get("props") or {}
+        for index in (array_index(values[name]) for name in _POSES if name in values):
+            poses = np.frombuffer(arrays[index], np.float32)
+            rounded = np.round(poses / POSE_STEP) * POSE_STEP
+            arrays[index] = memoryview(rounded.astype("<f4").tobytes())
+    return arrays

@@ -47,6 +47,8 @@ class ReplayView(Record):
         frame_s: time between two frames of level 0.
         segment_frames: number of frames in a segment.
         lowest_level: each level has half as many frames as the one below.
+        version: version of the frames; a segment that is requested with it never changes once it
+            has all its frames.
     """
 
     run_id: str
@@ -62,6 +64,7 @@ class ReplayView(Record):
     segment_frames: int
     lowest_level: int
     highest_level: int
+    version: str
 
 
 class Replay:
@@ -94,6 +97,11 @@ class Replay:
             self.show.advance(0.0, 1.0, run_ended=self.is_complete)
             return self.show.recorded
 
+    @property
+    def version(self) -> str:
+        """Version of the frames; empty for a replay that nothing stores."""
+        return ""
+
     def plan(self) -> ReplayView:
         """Return the recorded intervals, the steps and the marks of the run."""
         with self._lock:
@@ -114,6 +122,7 @@ class Replay:
                 segment_frames=SEGMENT_FRAMES,
                 lowest_level=LOWEST_LEVEL,
                 highest_level=HIGHEST_LEVEL,
+                version=self.version,
             )
 
     def segment_times_s(self, level: int, number: int) -> list[float]:

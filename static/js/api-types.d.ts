@@ -3725,6 +3725,10 @@ export interface ReplayView {
    */
   lowest_level: number;
   highest_level: number;
+  /**
+   * version of the frames; a segment that is requested with it never changes once it has all its frames.
+   */
+  version: string;
 }
 /**
  * The results of a room, by card.

@@ -53,7 +53,7 @@ let draw = () => {};
 /** @type {SceneState | null} */
 let scene = null;
 const segments = new Segments(
-  (address) => request(address, { clock: clock.peek() }),
+  (address) => request(address, { clock: clock.peek(), version: plan.peek()?.version ?? "" }),
   (error, again) => retryAfter(error, opening, again),
 );
 const NOTHING = { address: "", index: -1, time_s: NaN, frame: /** @type {Frame | null} */ (null), view: "" };

@@ -151,6 +151,12 @@ def remap_buffers(value: Any, source: Sequence[memoryview], target: list[memoryv
     return value
 
 
+def array_index(value: dict[str, Any]) -> int:
+    """Return the index of the array that a value of a message names."""
+    index: int = value[_INDEX_KEY]
+    return index
+
+
 class Slot(NamedTuple):
     """The place of a message in the state of the scene: a newer one with the same key replaces it.
 

@@ -1,0 +1,64 @@
+"""Segments of replays in caches: a segment with all its frames is sent once, and never changes."""
+
+from typing import Any
+
+import pytest
+
+from tests.api.calls import Api
+
+
+@pytest.fixture(scope="module")
+def race(api: Api) -> dict[str, Any]:
+    return api.finished(api.race(lanes=[{"agent": "greedy"}], steps=3))
+
+
+def segment(
+    api: Api, race: dict[str, Any], headers: dict[str, str] | None = None, **query: str
+) -> Any:
+    path = f"/runs/{race['id']}/replay/segments/0/0"
+    return api.call("GET", path, params=query, headers=headers)
+
+
+def version_of(api: Api, race: dict[str, Any]) -> str:
+    version: str = api.get(f"/runs/{race['id']}/replay")["version"]
+    return version
+
+
+def test_with_the_version_of_the_plan_a_segment_is_immutable(
+    api: Api, race: dict[str, Any]
+) -> None:
+    answer = segment(api, race, version=version_of(api, race))
+    assert answer.status_code == 200
+    assert answer.headers["cache-control"] == "public, max-age=31536000, immutable"
+    assert answer.headers["etag"].endswith('-gzip"')
+
+
+@pytest.mark.parametrize("version", [{}, {"version": "another"}])
+def test_without_it_a_segment_is_revalidated(
+    version: dict[str, str], api: Api, race: dict[str, Any]
+) -> None:
+    answer = segment(api, race, None, **version)
+    assert answer.headers["cache-control"] == "no-cache"
+    again = segment(api, race, {"If-None-Match": answer.headers["etag"]}, **version)
+    assert (again.status_code, again.content) == (304, b"")
+    assert again.headers["etag"] == answer.headers["etag"]
+
+
+def test_each_encoding_clock_and_version_has_its_own_tag(api: Api, race: dict[str, Any]) -> None:
+    plain = segment(api, race, {"Accept-Encoding": "identity"})
+    tags = {plain.headers["etag"], segment(api, race).headers["etag"]}
+    tags.add(segment(api, race, clock="free").headers["etag"])
+    before = version_of(api, race)
+    api.call("PATCH", f"/runs/{race['id']}", json={"name": "renamed"})
+    assert version_of(api, race) != before
+    tags.add(segment(api, race).headers["etag"])
+    assert len(tags) == 4
+
+
+def test_what_a_running_run_has_not_recorded_yet_is_requested_anew(api: Api) -> None:
+    training = api.slow_training()
+    api.until(training, lambda run: run["progress"]["done"] > 2)
+    answer = segment(api, training, version=version_of(api, training))
+    api.tell(training, "stop")
+    assert answer.headers["cache-control"] == "no-cache"
+    assert "etag" not in answer.headers
