@@ -133,16 +133,18 @@ def get_replay_segment(
     """Return the frames of a segment; fewer than it can have where the run still computes.
 
     A segment with all its frames has an `ETag`, and is immutable if the request has the `version`
-    of the plan: it may be stored by caches on the way, unless the run is hidden from others.
+    of the plan. Caches on the way may store it where anyone may watch the run.
     """
     frames = services.replays.segment(run_id, clock, *segment, ghost)
     if not frames.is_final:
         return gzipped(request, frames.data, _MEDIA_TYPE)
     shown_ids = [shown for shown in (run_id, ghost) if shown is not None]
-    is_hidden = any(services.features.is_hidden(shown, None) for shown in shown_ids)
+    is_public = services.settings.spectators == "public" and not any(
+        services.features.is_hidden(shown, None) for shown in shown_ids
+    )
     caching = Caching(
         tag=f"{frames.version}-{clock}-{segment.level}-{segment.number}",
         is_immutable=version == frames.version,
-        is_public=not is_hidden,
+        is_public=is_public,
     )
     return gzipped(request, frames.data, _MEDIA_TYPE, caching)

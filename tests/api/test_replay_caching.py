@@ -1,15 +1,21 @@
 """Segments of replays in caches: a segment with all its frames is sent once, and never changes."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from app.settings import Settings
 from tests.api.calls import Api
+from tests.api.conftest import running
+
+TOKEN = "a-token-that-is-long-enough"
+SHORT = {"lanes": [{"agent": "greedy"}], "steps": 3}
 
 
 @pytest.fixture(scope="module")
 def race(api: Api) -> dict[str, Any]:
-    return api.finished(api.race(lanes=[{"agent": "greedy"}], steps=3))
+    return api.finished(api.race(**SHORT))
 
 
 def segment(
@@ -31,6 +37,17 @@ def test_with_the_version_of_the_plan_a_segment_is_immutable(
     assert answer.status_code == 200
     assert answer.headers["cache-control"] == "public, max-age=31536000, immutable"
     assert answer.headers["etag"].endswith('-gzip"')
+
+
+def test_where_watching_needs_the_token_only_the_browser_stores_it(tmp_path: Path) -> None:
+    settings = Settings(data=tmp_path, token=TOKEN, spectators="token", job_niceness=0)
+    with running(settings) as guarded:
+        guarded.client.headers["Authorization"] = f"Bearer {TOKEN}"
+        race = guarded.finished(guarded.race(**SHORT))
+        answer = segment(guarded, race, version=version_of(guarded, race))
+        assert answer.headers["cache-control"] == "private, max-age=31536000, immutable"
+        del guarded.client.headers["Authorization"]
+        assert segment(guarded, race).status_code == 401
 
 
 @pytest.mark.parametrize("version", [{}, {"version": "another"}])
