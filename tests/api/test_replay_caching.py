@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import httpx2
 import pytest
 
 from app.settings import Settings
@@ -19,9 +20,14 @@ def race(api: Api) -> dict[str, Any]:
 
 
 def segment(
-    api: Api, race: dict[str, Any], headers: dict[str, str] | None = None, **query: str
-) -> Any:
-    path = f"/runs/{race['id']}/replay/segments/0/0"
+    api: Api,
+    run: dict[str, Any],
+    headers: dict[str, str] | None = None,
+    *,
+    number: int = 0,
+    **query: str,
+) -> httpx2.Response:
+    path = f"/runs/{run['id']}/replay/segments/0/{number}"
     return api.call("GET", path, params=query, headers=headers)
 
 
@@ -72,10 +78,15 @@ def test_each_encoding_clock_and_version_has_its_own_tag(api: Api, race: dict[st
     assert len(tags) == 4
 
 
-def test_what_a_running_run_has_not_recorded_yet_is_requested_anew(api: Api) -> None:
+def test_what_a_run_has_not_recorded_yet_is_requested_anew(api: Api) -> None:
     training = api.slow_training()
-    api.until(training, lambda run: run["progress"]["done"] > 2)
-    answer = segment(api, training, version=version_of(api, training))
-    api.tell(training, "stop")
+    api.tell(training, "pause")
+    api.until(training, lambda now: now["state"] == "paused")
+    plan = api.get(f"/runs/{training['id']}/replay")
+    frames = plan["recorded_s"][-1][1] / plan["frame_s"]
+    newest = int(frames / plan["segment_frames"])
+    answer = segment(api, training, number=newest, version=plan["version"])
+    assert answer.status_code == 200
     assert answer.headers["cache-control"] == "no-cache"
     assert "etag" not in answer.headers
+    api.stop(training)
