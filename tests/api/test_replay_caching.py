@@ -25,7 +25,7 @@ def segment(
     headers: dict[str, str] | None = None,
     *,
     number: int = 0,
-    **query: str,
+    **query: Any,
 ) -> httpx2.Response:
     path = f"/runs/{run['id']}/replay/segments/0/{number}"
     return api.call("GET", path, params=query, headers=headers)
@@ -58,7 +58,7 @@ def test_where_watching_needs_the_token_only_the_browser_stores_it(tmp_path: Pat
 
 @pytest.mark.parametrize("version", [{}, {"version": "another"}])
 def test_without_it_a_segment_is_revalidated(
-    version: dict[str, str], api: Api, race: dict[str, Any]
+    version: dict[str, Any], api: Api, race: dict[str, Any]
 ) -> None:
     answer = segment(api, race, None, **version)
     assert answer.headers["cache-control"] == "no-cache"
