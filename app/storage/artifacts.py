@@ -43,7 +43,7 @@ class ArtifactFiles:
     """Folder with the artifact files of one database. Thread-safe."""
 
     def __init__(self, folder: Path, disk_space: DiskSpace) -> None:
-        """Use a folder.
+        """Read and write artifact files in a folder.
 
         Args:
             folder: for the artifact files alone; must exist before the first write.

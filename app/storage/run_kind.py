@@ -84,7 +84,7 @@ class AddedKind(RunKind, ABC):
         return {}
 
     def outcome(self, result: Any) -> str:
-        """Return a result in a few words; nothing if there is nothing to say."""
+        """Return a result in a few words; empty for a kind without such words."""
         del result
         return ""
 
