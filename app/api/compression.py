@@ -14,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import Scope
 
-_YEAR_S = 365 * 24 * 3600
+_YEAR_S, _SHARED_S = 365 * 24 * 3600, 3600
 
 
 class CompressedContent:
@@ -75,7 +75,9 @@ class Caching:
         """Value of the header `Cache-Control`."""
         if not self.is_immutable:
             return "no-cache"
-        return f"{'public' if self.is_public else 'private'}, max-age={_YEAR_S}, immutable"
+        # Shared caches ask again after a while, as the content may have been deleted or hidden.
+        sharing = f"public, s-maxage={_SHARED_S}" if self.is_public else "private"
+        return f"{sharing}, max-age={_YEAR_S}, immutable"
 
 
 def gzipped(

@@ -41,7 +41,7 @@ def test_with_the_version_of_the_plan_a_segment_is_immutable(
 ) -> None:
     answer = segment(api, race, version=version_of(api, race))
     assert answer.status_code == 200
-    assert answer.headers["cache-control"] == "public, max-age=31536000, immutable"
+    assert answer.headers["cache-control"] == "public, s-maxage=3600, max-age=31536000, immutable"
     assert answer.headers["etag"].endswith('-gzip"')
 
 
