@@ -15,8 +15,7 @@ from types import FrameType
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from fastapi.routing import iter_route_contexts
-from starlette.routing import BaseRoute, Route, WebSocketRoute
-from starlette.websockets import WebSocket
+from starlette.routing import BaseRoute
 
 from app.active_features import Features
 from app.api import (
@@ -43,14 +42,13 @@ from app.api.middleware import SecurityHeaders
 from app.api.policy import (
     WATCH_STAGE,
     GuardedPage,
-    GuardedSocket,
     RoutePolicy,
     api_router,
     guard_everything,
 )
 from app.api.problem_pages import ProblemPages
 from app.api.request_headers import DeclaredHeaders
-from app.api.stage_paths import StagePaths, stage_of
+from app.api.stage_paths import StagePaths
 from app.api.starts import start_kinds, start_routes
 from app.api.unfinished import IncompleteBodyGuard
 from app.api.wellformed import MalformedRequestGuard
@@ -75,7 +73,6 @@ from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.session import websocket_options
 from app.viewer.shared_stage import SharedStage
 from app.viewer.viewer_page import viewer_routes
 from hexapods import assets
@@ -116,6 +113,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     """
     recordings, bus = Recordings(store), RunMetrics()
     stopping = Stopping()
+    replays = ReplayFrames(Replays(store, recordings), stopping)
     features = Features(load(settings.without), store)
     new_stage = partial(
         SharedStage,
@@ -123,7 +121,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         recordings,
         bus,
         roles=Roles(settings.token, store.sessions, is_public=settings.spectators == "public"),
-        viewer_slots=ClientSlots(settings.max_viewers, settings.viewers_per_address),
+        frames=replays,
         members=features.stage_members(),
     )
     stages = [shared := new_stage()]
@@ -145,7 +143,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         docs_url=None,
         redoc_url=None,
     )
-    replays = ReplayFrames(Replays(store, recordings), stopping)
     app.state.services = Services(
         settings=settings,
         store=store,
@@ -227,17 +224,9 @@ def _check_is_new(feature: type[Feature], path: str, is_taken: bool) -> None:
 def _viewer_routes() -> list[BaseRoute]:
     """Return the routes of the 3D view behind the guards, of which its package knows nothing."""
     watch = RoutePolicy(access=WATCH_STAGE)
-    routes: list[BaseRoute] = []
-    for route in viewer_routes(_serve_viewer):
-        if isinstance(route, Route):
-            routes.append(GuardedPage(route.path, route.endpoint, watch, name=route.name))
-        elif isinstance(route, WebSocketRoute):
-            routes.append(GuardedSocket(route.path, route.endpoint, watch, name=route.name))
-    return routes
-
-
-async def _serve_viewer(websocket: WebSocket) -> None:
-    await stage_of(websocket.scope).hub.serve(websocket)
+    return [
+        GuardedPage(route.path, route.endpoint, watch, name=route.name) for route in viewer_routes()
+    ]
 
 
 @cache
@@ -256,6 +245,7 @@ def _api_routes(
         with blaming(feature, "`start_kinds`"):
             kinds += feature.start_kinds(agents)
     routers += [stage.stage_routes(features), options.option_routes(features)]
+    routers += [replays.start_line_router, events.snapshot_routes(features)]
     routers.append(start_routes(agents, kinds))
     operations = {operation for added in routers for operation in _operations(added)}
     # First, so that their fixed paths, such as `/runs/NAME`, are not taken for a run's id.
@@ -359,7 +349,7 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
             loop="asyncio",
             # asyncio also uses it as the number of connections to accept at once.
             backlog=ACCEPTS_AT_ONCE,
-            **websocket_options(),
+            ws="none",
         )
         server = _Server(config, app, settings, listener, lost)
         server.on_ready = on_ready

@@ -74,6 +74,7 @@ VALID: dict[str, str] = {
     ),
     "run_id": "the id of a run",
     "id": f"the id of a run; up to {MAX_RUN_IDS} of them as id=…&id=…",
+    "picture": "true or false",
     "ghost": "the id of another run of the same kind that has ended",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",

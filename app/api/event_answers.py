@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from app.answer import Answer, Count, extended
 from app.api.run_views import ListedRunView
 from app.events.event_records import (
+    ClockEvent,
     DeletedRun,
     Evaluation,
     EvaluationEvent,
@@ -18,6 +19,7 @@ from app.events.event_records import (
 )
 from app.feature import Feature, stage_members
 from app.stage.stage import StageView, stage_view
+from app.viewer.picture_feed import PieceEvent
 from hexapods.shows.scene_view import SceneView
 
 
@@ -52,7 +54,8 @@ class EventBodies(Answer):
     reference: ReferenceEvent
     rates: RatesEvent
     stage: StageView
-    scene: SceneView
+    piece: PieceEvent
+    clock: ClockEvent
     viewers: ViewersEvent
     robots: RobotsEvent
 

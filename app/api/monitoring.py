@@ -82,7 +82,7 @@ def _unready_reason(services: Services) -> str | None:
 )
 @policy(access=WATCH)
 def get_metrics(request: Request) -> Response:
-    """Return metrics of runs by state, steps, viewers, frames, the queue and the process."""
+    """Return metrics of runs by state, steps, viewers, the queue and the process."""
     encode, content_type = exposition.choose_encoder(request.headers.get("accept", ""))
     registry: CollectorRegistry = request.app.state.metrics
     return Response(encode(registry), headers={"Content-Type": content_type})
@@ -104,7 +104,6 @@ class _ServicesCollector(Collector):
 
     def collect(self) -> Iterable[Metric]:
         services = self._services
-        counters = [shared.hub.counters for shared in services.stages]
         counts, damaged = services.store.counts(), self._damaged()
         runs = GaugeMetricFamily("hexapods_runs", "Runs that are kept, by state.", labels=["state"])
         for state in STATES:
@@ -137,17 +136,12 @@ class _ServicesCollector(Collector):
         yield GaugeMetricFamily(
             "hexapods_viewers",
             "Who watches the stage.",
-            sum(counter.viewers for counter in counters),
+            sum(shared.viewers for shared in services.stages),
         )
         yield CounterMetricFamily(
-            "hexapods_frames_sent",
-            "Frames sent to viewers.",
-            sum(counter.frames_sent for counter in counters),
-        )
-        yield CounterMetricFamily(
-            "hexapods_frames_merged",
-            "Frames that a viewer got as a part of a later one, because it was behind.",
-            sum(counter.frames_merged for counter in counters),
+            "hexapods_pieces",
+            "Pieces of the picture that were pushed, each to all who watch a stage.",
+            sum(shared.pieces for shared in services.stages),
         )
         yield from services.features.metrics()
         yield InfoMetricFamily("hexapods", "The server.", {"version": __version__})

@@ -19,7 +19,7 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute, APIRouter, iter_route_contexts
 from starlette.datastructures import URL
 from starlette.responses import RedirectResponse
-from starlette.routing import BaseRoute, Match, Mount, Route, WebSocketRoute
+from starlette.routing import BaseRoute, Match, Mount, Route
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.record_response import response_model
@@ -263,25 +263,6 @@ class GuardedFiles(Mount):
         await _guard(of_request, super().handle, scope, receive, send)
 
 
-class GuardedSocket(WebSocketRoute):
-    """A websocket, behind the guards.
-
-    Attributes:
-        policy: of connecting to it.
-    """
-
-    def __init__(
-        self, path: str, endpoint: Callable[..., Any], policy: RoutePolicy, name: str | None = None
-    ) -> None:
-        """Create a route."""
-        self.policy = policy
-        super().__init__(path, endpoint, name=name)
-
-    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve a browser, if the guards let it connect."""
-        await _guard(self.policy, super().handle, scope, receive, send)
-
-
 def _policy_for(route: GuardedRoute | GuardedPage, scope: Scope) -> RoutePolicy:
     """Return the policy of a request that matches a route by its path."""
     has_method = route.methods is None or scope["method"] in route.methods
@@ -336,7 +317,7 @@ def _is_guarded(route: BaseRoute, app: FastAPI) -> bool:
     if isinstance(route, GuardedRoute):
         return True
     # FastAPI serves copies of other routes of a router that is included, which are not guarded.
-    is_page = isinstance(route, (GuardedPage, GuardedFiles, GuardedSocket))
+    is_page = isinstance(route, (GuardedPage, GuardedFiles))
     return is_page and any(route is route_ for route_ in app.routes)
 
 

@@ -10,14 +10,16 @@ from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
 from app.api.fields import RunId
-from app.api.policy import WATCH_RUN, api_router, policy
+from app.api.policy import WATCH_RUN, WATCH_STAGE, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.runs import RunPath
 from app.api.work import ANALYSIS
 from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL, ReplayView
+from hexapods.version import __version__
 
 router = api_router(prefix="/runs/{run_id}/replay", tags=["replays"])
+start_line_router = api_router(tags=["replays"])
 
 _MEDIA_TYPE = "application/octet-stream"
 _FRAMES = answers(200, {_MEDIA_TYPE: BINARY})
@@ -52,6 +54,19 @@ def get_replay_scene(
 ) -> Response:
     """Return the scene on which all frames are based; for the format see `docs/replays.md`."""
     return gzipped(request, services.replays.scene(run_id, ghost), _MEDIA_TYPE)
+
+
+@start_line_router.get(
+    "/start-line",
+    summary="Get the scene of a stage without a run",
+    response_class=Response,
+    responses=_FRAMES,
+)
+@policy(access=WATCH_STAGE, work=ANALYSIS)
+def get_start_line(services: ServicesDep, request: Request) -> Response:
+    """Return the robots on the start line, as the scene of a replay is encoded."""
+    caching = Caching(tag=f"start-line-{__version__}", is_immutable=False, is_public=False)
+    return gzipped(request, services.replays.start_line(), _MEDIA_TYPE, caching)
 
 
 @router.get(
@@ -132,8 +147,8 @@ def get_replay_segment(
 ) -> Response:
     """Return the frames of a segment; fewer than it can have where the run still computes.
 
-    A segment with all its frames has an `ETag`, and is immutable if the request has the `version`
-    of the plan. Caches on the way may store it where anyone may watch the run.
+    A segment of a run that has ended has an `ETag`, and is immutable if the request has the
+    `version` of the plan. Caches on the way may store it where anyone may watch the run.
     """
     frames = services.replays.segment(run_id, clock, *segment, ghost)
     if not frames.is_final:

@@ -53,7 +53,7 @@ def get_spectators(
         address=address,
         qr_code=None if address is None else qr_image(address),
         reason=reason if address is None else "",
-        watching=shared.hub.counters.viewers,
+        watching=shared.viewers,
     )
     return RecordResponse(spectators)
 

@@ -17,8 +17,8 @@ TITLES = {
     "two_step_decision_s": "time of a two-step decision, s",
     "threads": "threads",
     "two_step_decision_over_motion": "time of a two-step decision, in times of its motion",
-    "stage_update_ms": "time of an update of the stage, ms",
-    "stage_update_bytes": "size of an update of the stage, bytes",
+    "picture_encoding_share": "time to encode the picture of three robots, in times of its own",
+    "picture_bytes_per_second": "size of the picture of three robots, bytes a second",
 }
 """Titles of the figures, by their names in JSON."""
 LIMITS = {
@@ -27,8 +27,8 @@ LIMITS = {
     "lookahead_speedup": "at least 1.7 on two idle cores",
     "two_step_decision_over_motion": "at most 1.0 on two idle cores",
     "planning_overhead": "at most 0.10",
-    "stage_update_ms": "at most 2",
-    "stage_update_bytes": "at most 4,000",
+    "picture_encoding_share": "at most 0.05",
+    "picture_bytes_per_second": "at most 18,000",
 }
 
 
@@ -38,7 +38,7 @@ def bench(*, as_json: AsJson = False) -> int:
         benchmarks.training,
         benchmarks.look_ahead,
         benchmarks.racing,
-        _stage,
+        benchmarks.picture,
     )
     figures: dict[str, float] = {}
     with progress() as bar:
@@ -60,11 +60,3 @@ def bench(*, as_json: AsJson = False) -> int:
 def _significant(value: float) -> str:
     """Format a number with four significant digits, never as a power of ten."""
     return f"{value:,.0f}" if value >= 1000 else f"{value:.4g}"
-
-
-def _stage() -> dict[str, float]:
-    # Imported here, as it takes a second that other commands would wait for.
-    from app.viewer.update_cost import measure_stage_update  # noqa: PLC0415
-
-    milliseconds, size = measure_stage_update(updates=200)
-    return {"stage_update_ms": milliseconds, "stage_update_bytes": size}

@@ -5,6 +5,7 @@ rounds is used, since noise only adds time.
 """
 
 import os
+import statistics
 import time
 from collections.abc import Callable, Sequence
 
@@ -16,15 +17,20 @@ from hexapods.agents.lookahead import TwoStep
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.observation import legal_actions, observe
 from hexapods.domain.types import Action, FloatArray
+from hexapods.drawing.replay_encoding import encode_frames
 from hexapods.physics.mjcf import compile_visual_model
 from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.racing import race
+from hexapods.runs.racing import race, record_race
 from hexapods.runs.records import LaneStep, StepTaken
 from hexapods.runs.training import train
 from hexapods.runs.walker import SimulatorExpand, Walker
+from hexapods.shows.race_show import RaceShow
+from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES, Replay
+from hexapods.shows.scene_spec import PAPERS_LANES, race_scene
+from hexapods.shows.show import RunLabel
 
 WALK = WalkingProblem(gait="left-right-origin")
 ROUNDS = 5
@@ -142,3 +148,25 @@ def _seconds(function: Callable[[], object]) -> float:
     began = time.perf_counter()
     function()
     return time.perf_counter() - began
+
+
+def picture() -> dict[str, float]:
+    """Measure what a second of the picture of three walking robots takes, and its size."""
+    lanes = tuple(LaneConfig(agent=agent) for agent in PAPERS_LANES)
+    config = RaceConfig(gait=WALK.gait, simulator="kinematic", lanes=lanes)
+    walkers = build_walkers(config, [None] * len(lanes))
+    recorded = list(record_race(walkers, config, time.perf_counter))[-1]
+    # Without thinking times, so that every robot moves in every frame.
+    show = RaceShow(race_scene(config), config.steps, "free", lambda: recorded)
+    replay = Replay(show, RunLabel(None, "Race"))
+    taken_s, sizes = [], []
+    for number in range(ROUNDS):
+        times_s = replay.segment_times_s(0, number)
+        began_s = time.process_time()
+        sizes.append(len(encode_frames(replay, times_s)))
+        taken_s.append(time.process_time() - began_s)
+    segment_s = SEGMENT_FRAMES / FRAMES_PER_S
+    return {
+        "picture_encoding_share": min(taken_s) / segment_s,
+        "picture_bytes_per_second": statistics.median(sizes) / segment_s,
+    }

@@ -5,12 +5,15 @@ ring buffer replays the other events to subscribers that reconnect with `Last-Ev
 """
 
 import asyncio
+import contextlib
 import itertools
 import threading
 import time
 from collections import OrderedDict, deque
 from collections.abc import AsyncIterator, Callable, Container
 from typing import Any, NamedTuple
+
+from fastapi.sse import format_sse_event
 
 from app.events.run_view import view_of
 from app.storage.run import AnyRun
@@ -20,6 +23,10 @@ RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
 """Most pending events of a slow subscription."""
+PIECE_EVENTS = frozenset({"piece"})
+"""Names of events with frames of the picture: many bytes, and of no use after their time."""
+MAX_PENDING_PIECES = 4
+"""Most pending pieces of a slow subscription: a page fetches those that it needs and has missed."""
 
 
 class Event(NamedTuple):
@@ -33,6 +40,7 @@ class Event(NamedTuple):
         run: of a `run` event the run itself, for subscribers in this process.
         channel: the channel to whose subscribers alone it goes; None for all channels.
         is_state: whether it carries a full state.
+        wire: it as a server-sent event, encoded once for all clients.
     """
 
     id: int
@@ -42,6 +50,7 @@ class Event(NamedTuple):
     run: AnyRun | None = None
     channel: "Channel | None" = None
     is_state: bool = False
+    wire: bytes = b""
 
     @property
     def key(self) -> Any:
@@ -71,8 +80,10 @@ class Subscription:
         names: Container[str] | None,
         channel: "Channel | None",
         since: int,
+        *,
+        has_picture: bool,
     ) -> None:
-        self.since, self.channel = since, channel
+        self.since, self.channel, self._has_picture = since, channel, has_picture
         self._bus, self._run_ids, self._names = bus, run_ids, names
         self._pending: OrderedDict[Any, Event] = OrderedDict()
         self._lock = threading.Lock()
@@ -85,6 +96,8 @@ class Subscription:
             return
         if self._names is not None and event.event not in self._names:
             return
+        if event.event in PIECE_EVENTS and not self._has_picture:
+            return
         if self.channel is not event.channel and None not in (self.channel, event.channel):
             return
         with self._lock:
@@ -93,10 +106,16 @@ class Subscription:
             self._closed |= len(self._pending) >= MAX_PENDING
             if not self._closed:
                 self._pending[event.key] = event
+                self._drop_old_pieces()
         if self._closed:
             self.close()
         elif was_empty:
             self._wake_reader()
+
+    def _drop_old_pieces(self) -> None:
+        pieces = [key for key, event in self._pending.items() if event.event in PIECE_EVENTS]
+        for key in pieces[:-MAX_PENDING_PIECES]:
+            del self._pending[key]
 
     def close(self) -> None:
         """End the iteration after the pending events; callable from any thread."""
@@ -112,15 +131,28 @@ class Subscription:
         return events
 
     async def __aiter__(self) -> AsyncIterator[Event]:
+        async for events in self.batches():
+            for event in events:
+                yield event
+
+    async def batches(self, idle_s: float | None = None) -> AsyncIterator[list[Event]]:
+        """Yield the pending events when there are any, and none after a time without any.
+
+        Args:
+            idle_s: that time [s]; None to wait for events however long.
+        """
         loop, ready = asyncio.get_running_loop(), asyncio.Event()
         self._wake = lambda: loop.call_soon_threadsafe(ready.set)
         ready.set()
         try:
             while True:
-                await ready.wait()
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(idle_s):
+                        await ready.wait()
                 ready.clear()
-                for event in self.drain():
-                    yield event
+                events = self.drain()
+                if events or not self._closed:
+                    yield events
                 if self._closed:
                     return
         finally:
@@ -142,7 +174,7 @@ class EventBus:
     """
 
     def __init__(self) -> None:
-        self.state_events = {"robots", "run", "scene", "stage", "summary", "viewers"}
+        self.state_events = {"robots", "run", "stage", "summary", "viewers"}
         # Starts at the time [ms], so that ids keep increasing across restarts of the server.
         self._last_id = time.time_ns() // 1_000_000
         self._ids = itertools.count(self._last_id + 1)
@@ -189,9 +221,11 @@ class EventBus:
         text = to_json_bytes(data).decode()
         with self._lock:
             is_state = event in self.state_events
-            published = Event(next(self._ids), event, text, run_id, run, channel, is_state)
+            number = next(self._ids)
+            wire = format_sse_event(data_str=text, event=event, id=str(number))
+            published = Event(number, event, text, run_id, run, channel, is_state, wire)
             self._last_id = published.id
-            if not is_state:
+            if not is_state and event not in PIECE_EVENTS:
                 self._ring.append(published)
             for subscription in list(self._subscriptions):
                 subscription.push(published)
@@ -202,6 +236,8 @@ class EventBus:
         last_event_id: int | None = None,
         names: Container[str] | None = None,
         channel: "Channel | None" = None,
+        *,
+        has_picture: bool = False,
     ) -> Subscription:
         """Create a subscription.
 
@@ -211,12 +247,15 @@ class EventBus:
                 a snapshot supersedes. An id in the future counts as None.
             names: only events of these names; None for all.
             channel: only events of this channel, and those for all; None for every event.
+            has_picture: whether it gets the pieces of the picture, too.
         """
         with self._lock:
             since = self._last_id
             if last_event_id is not None and last_event_id < since:
                 since = last_event_id
-            subscription = Subscription(self, run_ids, names, channel, since)
+            subscription = Subscription(
+                self, run_ids, names, channel, since, has_picture=has_picture
+            )
             self._subscriptions.add(subscription)
             for missed in self._ring if since < self._last_id else ():
                 if missed.id > since:
@@ -264,9 +303,11 @@ class Channel:
         run_ids: Container[str | None] | None = None,
         last_event_id: int | None = None,
         names: Container[str] | None = None,
+        *,
+        has_picture: bool = False,
     ) -> Subscription:
         """Create a subscription; see `EventBus.subscribe`."""
-        return self._bus.subscribe(run_ids, last_event_id, names, self)
+        return self._bus.subscribe(run_ids, last_event_id, names, self, has_picture=has_picture)
 
     def close(self) -> None:
         """Close all subscriptions of this channel, and future ones at once."""

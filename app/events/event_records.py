@@ -43,6 +43,12 @@ class RatesEvent(Answer):
     settings: NewSettings = field(default_factory=dict)
 
 
+class ClockEvent(Answer):
+    """The time of the server's clock [s], after a while without other events."""
+
+    sent_s: float
+
+
 class ViewersEvent(Answer):
     """The number of pages that watch the stage."""
 

@@ -5,6 +5,7 @@ is asked for the frame at a time, so that every page can have a position of its 
 """
 
 import hashlib
+import itertools
 import json
 import threading
 from collections.abc import Callable, Sequence
@@ -105,6 +106,9 @@ def original_of(config: RaceConfig, store: RunStore, recordings: RaceRecordings)
     return Original(branch.step, world, lanes) if lanes else None
 
 
+_numbers = itertools.count()
+
+
 class StoredReplay(Replay):
     """Replay of a stored run.
 
@@ -125,11 +129,22 @@ class StoredReplay(Replay):
         label = RunLabel(run.id, run.name, playing=True, replay=True, outcome=run.state)
         super().__init__(show, label, ghost, is_complete=run.state not in NOT_ENDED)
         self.run, self.stored_ghost, self._held = run, ghost, recordings
+        self._number = next(_numbers)
 
     @property
     def version(self) -> str:
-        """Version of the frames: a hash of all that they depend on but further steps."""
-        return _version_of(self.run, self.stored_ghost.run if self.stored_ghost else None)
+        """Version of the frames, see `version_of`."""
+        return version_of(self.run, self.stored_ghost.run if self.stored_ghost else None)
+
+    @property
+    def recording_number(self) -> tuple[int, int]:
+        """Another value for each recording of a run, in this process."""
+        show = self.show
+        return self._number, show.recording_number if isinstance(show, RaceShow) else 0
+
+    def is_of(self, run: Run, ghost: Run | None) -> bool:
+        """Whether it shows these runs as they are now."""
+        return self.version == version_of(run, ghost)
 
     @property
     def size(self) -> int:
@@ -190,35 +205,47 @@ class Replays:
 
     def version(self, run_id: str, ghost_id: str | None = None) -> str:
         """Return the version that a replay would have; raises as `get`, but for a recording."""
-        return _version_of(*self._runs(run_id, ghost_id))
+        return version_of(*self._runs(run_id, ghost_id))
 
-    def get(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> StoredReplay:
+    def get(
+        self,
+        run_id: str,
+        clock: Clock,
+        ghost_id: str | None = None,
+        *,
+        needs_recording: bool = True,
+    ) -> StoredReplay:
         """Return the replay of a run, of a race as timed by a clock.
 
         Args:
             run_id: id of a training or race.
             clock: times a race.
             ghost_id: id of another run of the same kind, whose lanes are shown as ghosts.
+            needs_recording: whether a run that has ended must have a recording; else it is shown
+                on the start line.
 
         Raises:
             NotFound: if there is no such run.
             InvalidInput: if it is neither, or the ghost is the run itself or of another kind.
-            Conflict: if it has no recording (yet), or the ghost still runs.
+            Conflict: if it has ended without a recording, or the ghost still runs.
         """
         run, ghost = self._runs(run_id, ghost_id)
         key = (run_id, clock, ghost_id)
         with self._lock:
             replay = self._kept.get(key)
-            if replay is None or replay.version != _version_of(run, ghost):
+            if replay is None or not replay.is_of(run, ghost):
                 replay = self._replay(run, clock, self._replay(ghost, clock) if ghost else None)
                 self._kept[key] = replay
+        # A run that is computed may have no recording yet.
         missing = [
-            shown.run for shown in (replay, replay.stored_ghost) if shown and not shown.recorded
+            shown.run
+            for shown in (replay, replay.stored_ghost)
+            if shown and not shown.recorded and shown.is_complete
         ]
         with self._lock:
             # Its size is known once it was read.
             self._kept[key] = replay
-        for run in missing:
+        for run in missing if needs_recording else ():
             raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
         return replay
 
@@ -254,9 +281,13 @@ def _check_ghost(run: Run, ghost: Run) -> None:
         )
 
 
-def _version_of(run: Run, ghost: Run | None) -> str:
+def version_of(run: Run, ghost: Run | None = None) -> str:
+    """Return the version of a run's frames: a hash of all that they depend on but its recording."""
     runs = [
-        [shown.id, shown.created_at, shown.state, shown.ended_at, shown.name, shown.changes]
+        [
+            *(shown.id, shown.created_at, shown.name, shown.changes),
+            *(() if shown.state in NOT_ENDED else (shown.state, shown.ended_at)),
+        ]
         for shown in (run, ghost)
         if shown
     ]

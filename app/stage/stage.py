@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, timedelta
 from functools import cache
 from types import MappingProxyType
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge
 
 from app.answer import Answer, extended
 from app.events.bus import Channel, Event, Subscription
-from app.stage.playback import show_of
+from app.stage.playback import show_of, version_of
 from app.stage.state_machine import Origin, Phase, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
@@ -25,6 +25,7 @@ from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
+from hexapods.shows.playhead import Playhead
 from hexapods.shows.race_show import RaceShow
 from hexapods.shows.scene_view import SceneView, scene_view
 from hexapods.shows.show import IdleShow, RunLabel, Show
@@ -32,8 +33,14 @@ from hexapods.shows.stage_frame import StageFrame
 
 ANNOUNCE_AFTER_S, NEXT_AFTER_S = 10.0, 10.0
 """Time after the end of a show until a replay is announced, and from then until it begins [s]."""
-_MAX_FRAME_S = 0.25
-"""Longest time by which one frame advances playback: after a stall nothing is skipped."""
+_LONGEST_STALL_S = 2.0
+"""Longest time by which playback advances at once: a machine that was suspended goes on there."""
+_PLANNED_S, _PLANNED_LIVE_S = 20.0, 3.0
+"""Real time for which playheads are planned [s], also of runs that are still computed."""
+_NEARLY_USED_UP_S = 1.0
+"""Real time that is left of a playhead when the next one is planned [s]."""
+_DRIFT_S = 0.1
+"""Real time by which the picture may be off its playhead [s]."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
 _RECENT_RUNS = 20
 _logger = logging.getLogger(__name__)
@@ -55,6 +62,9 @@ class StageView(Answer):
     Attributes:
         phase: `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is
             at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
+        sent_s: time of the server's clock when this was written [s]; only differences count.
+        version: of the frames of the run on stage, as of its replay; null for an empty stage.
+        playhead: the moment that is shown, now and later.
         origin: why the run is on stage: it was `started`, a person has `chosen` it, the server
             replays it (`automatic`), or it was shown last before the server's start (`restored`).
     """
@@ -74,6 +84,21 @@ class StageView(Answer):
     next_run_id: str | None
     holder: str | None
     announced: Announcement | None
+    sent_s: float
+    version: str | None
+    playhead: Playhead
+
+
+class Picture(NamedTuple):
+    """What a stage shows: a run as timed by a clock, or none, and at which time of it."""
+
+    run_id: str | None
+    version: str | None
+    """Version of the run's frames."""
+    clock: Clock
+    playhead: Playhead
+    is_computed: bool
+    """Whether the run is still computed."""
 
 
 @cache
@@ -92,7 +117,7 @@ class Stage:
         store: store of the runs.
         recordings: recordings of the runs.
         channel: has events of changed and deleted runs; receives a `stage` event at each change.
-        now: monotonic clock of playback [s].
+        now: the server's clock, monotonic [s].
         announces: whether it shows earlier races by itself.
         members: records that features add to its state, by the member's name.
     """
@@ -107,7 +132,7 @@ class Stage:
         announces: bool = True,
         members: Mapping[str, Record] = _NO_MEMBERS,
     ) -> None:
-        self._store, self._recordings, self._now = store, recordings, now
+        self._store, self._recordings, self.now = store, recordings, now
         self._channel, self._announces = channel, announces
         self._lock = threading.RLock()
         self._clock: Clock = "paper"
@@ -126,7 +151,11 @@ class Stage:
         """Speed chosen by a user; None for the show's automatic speed."""
         self._waiting_since_s: float | None = None
         """When the show ended, or the next one was announced."""
-        self._last_frame_s = self._now()
+        self._last_s = self.now()
+        """When playback was last advanced, by the clock."""
+        self._playhead = self._planned(self._last_s)
+        self.changed = threading.Event()
+        """Set whenever a `stage` event is published; who waits for it clears it."""
 
     def restore(self) -> None:
         """Show the end of the run that was last at work, after a start of the server.
@@ -219,6 +248,7 @@ class Stage:
         """
         with self._lock:
             self._update_playlist()
+            self._move(self.now())
             if run_id is not None:
                 self._load([run_id], "chosen")
             if stay:
@@ -262,23 +292,44 @@ class Stage:
                 next_run_id=ids[1] if len(ids) > 1 else None,
                 holder=ids[-1] if state.is_held else None,
                 announced=self._announcement(),
+                sent_s=round(self.now(), 4),
+                version=self._version,
+                playhead=self._playhead,
                 **members,
             )
 
-    def frame(self) -> StageFrame:
-        """Advance playback to now, by the playback clock, and return its frame."""
+    def advance(self) -> bool:
+        """Advance playback to now.
+
+        Returns:
+            whether the picture follows another playhead since, of which no event has told.
+        """
         with self._lock:
-            now = self._now()
-            elapsed_s = min(max(now - self._last_frame_s, 0.0), _MAX_FRAME_S)
-            self._last_frame_s = now
+            now = self.now()
             self._update_playlist()
-            run = self._state.run
-            run_ended = run is None or not run.is_computed
-            self._show.advance(elapsed_s if self._playing else 0.0, self._speed, run_ended)
+            self._move(now)
             if self._follow_picture():
                 self._publish()
             self._show_next(now)
+            return self._plan(now)
+
+    def frame(self) -> StageFrame:
+        """Advance playback to now, and return its frame."""
+        with self._lock:
+            self.advance()
             return self._show.frame(self._run_label())
+
+    def picture(self) -> Picture:
+        """Return what is shown, and at which time."""
+        with self._lock:
+            run = self._state.run
+            is_computed = run is not None and run.is_computed
+            return Picture(self._run_id, self._version, self._clock, self._playhead, is_computed)
+
+    def publish(self) -> None:
+        """Publish a `stage` event."""
+        with self._lock:
+            self._publish()
 
     def scene(self) -> SceneView:
         """Return the view of the current frame for pages, without advancing playback."""
@@ -288,6 +339,51 @@ class Stage:
     @property
     def _run_id(self) -> str | None:
         return self._state.run.id if self._state.run else None
+
+    @property
+    def _version(self) -> str | None:
+        return version_of(self._runs[self._run_id]) if self._run_id else None
+
+    def _move(self, now: float) -> None:
+        """Advance the show to a time of the clock [s], as far as the run is recorded."""
+        elapsed_s = min(max(now - self._last_s, 0.0), _LONGEST_STALL_S)
+        self._last_s = now
+        run = self._state.run
+        run_ended = run is None or not run.is_computed
+        self._show.advance(elapsed_s if self._playing else 0.0, self._speed, run_ended)
+
+    def _plan(self, now: float) -> bool:
+        """Plan the playhead anew unless the picture still follows it; return if that was needed."""
+        before, show = self._playhead, self._show
+        is_held = not self._playing or show.ended
+        off = abs(before.time_at(now) - show.time_s)
+        is_off = off > _DRIFT_S * max(before.rate_at(now), 1.0)
+        is_used_up = not is_held and before.rate > 0 and before.ends_s - now < _NEARLY_USED_UP_S
+        if not (is_off or is_used_up or before.computed_s != show.computed_s):
+            return False
+        self._playhead = self._planned(now)
+        return True
+
+    def _planned(self, now: float) -> Playhead:
+        """Return the playhead from a time of the clock on [s]."""
+        show, run = self._show, self._state.run
+        is_computed = run is not None and run.is_computed
+        points = [(0.0, show.time_s)]
+        rate = 0.0
+        if self._playing and not show.ended:
+            longest_s = _PLANNED_LIVE_S if is_computed else _PLANNED_S
+            points = show.upcoming(self._speed, longest_s)
+            if len(points) > 1 and points[-1][0] >= longest_s:
+                (begin_s, before_s), (end_s, after_s) = points[-2:]
+                rate = (after_s - before_s) / (end_s - begin_s)
+        return Playhead(
+            at_s=round(now, 4),
+            points=[(round(after_s, 4), round(time_s, 4)) for after_s, time_s in points],
+            rate=round(rate, 4),
+            computed_s=show.computed_s,
+            duration_s=show.duration_s,
+            time_out_s=show.time_out_s,
+        )
 
     def _run_label(self) -> RunLabel:
         run = self._state.run
@@ -299,7 +395,7 @@ class Stage:
     def _announcement(self) -> Announcement | None:
         if self._state.announced is None or self._waiting_since_s is None:
             return None
-        left_s = self._waiting_since_s + NEXT_AFTER_S - self._now()
+        left_s = self._waiting_since_s + NEXT_AFTER_S - self.now()
         return Announcement(run_id=self._state.announced, in_s=round(max(0.0, left_s), 1))
 
     def _is_recorded(self, run: Run) -> bool:
@@ -324,11 +420,11 @@ class Stage:
         changes = self._changes.drain()
         if not changes:
             return
-        before, on_stage = self._state, self._run_id
+        before, on_stage, version = self._state, self._run_id, self._version
         resumed = [self._apply(event) for event in changes]
         if self._run_id != on_stage or any(resumed):
             self._begin()
-        elif self._state != before:
+        elif self._state != before or self._version != version:
             self._publish()
 
     def _apply(self, event: Event) -> bool:
@@ -462,6 +558,7 @@ class Stage:
         self._show, self._world = show, world
         self._playing, self._speed = True, None
         self._waiting_since_s = None
+        self._last_s = self.now()
         self._follow_picture()
         self._publish()
 
@@ -474,7 +571,9 @@ class Stage:
         return pace
 
     def _publish(self) -> None:
+        self._playhead = self._planned(self.now())
         self._channel.publish("stage", self.state())
+        self.changed.set()
 
 
 def _staged(run: Run) -> StagedRun:

@@ -14,10 +14,11 @@ from hexapods.domain.types import Cells
 from hexapods.drawing.replay_encoding import encode_frames, encode_posture, encode_scene
 from hexapods.exports.export_format import EncodedReplay
 from hexapods.runs.clocks import Clock
-from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment, ReplayView
+from hexapods.shows.replay import NoSuchSegment, Replay, ReplayView, interval_s
+from hexapods.shows.show import IdleShow, RunLabel
 
 _CACHE_BYTES = 32 << 20
-_SCENE = "scene"
+_SCENE, _START_LINE = "scene", "start-line"
 
 
 class Segment(NamedTuple):
@@ -26,7 +27,7 @@ class Segment(NamedTuple):
     Attributes:
         data: encoding of the frames.
         version: version of the replay's frames.
-        is_final: whether it has all its frames, so that this version of it never changes.
+        is_final: whether the run is complete, so that this version of the segment never changes.
     """
 
     data: bytes
@@ -65,17 +66,21 @@ class ReplayFrames:
         node that a page moves to follow a robot.
 
         Raises:
-            NotFound, InvalidInput, Conflict: see `Replays.get`.
+            NotFound, InvalidInput: see `Replays.get`.
             Busy: if the server stops, as in the methods below.
         """
         version = self._replays.version(run_id, ghost_id)
         if (cached := self._encodings.get((version, _SCENE))) is not None:
             return cached
-        replay = self._replays.get(run_id, "paper", ghost_id)
-        key = (replay.version, _SCENE)
+        replay = self._replays.get(run_id, "paper", ghost_id, needs_recording=False)
         return self._encoded_once(
-            key, replay.is_complete, lambda: encode_scene(replay, self._stopping.check)
+            (replay.version, _SCENE), lambda: encode_scene(replay, self._stopping.check)
         )
+
+    def start_line(self) -> bytes:
+        """Return the scene of a stage without a run: robots on the start line; see `scene`."""
+        replay = Replay(IdleShow(), RunLabel(None, "On the start line"))
+        return self._encoded_once(_START_LINE, lambda: encode_scene(replay, self._stopping.check))
 
     def moment(
         self, run_id: str, clock: Clock, time_s: float, ghost_id: str | None = None
@@ -120,7 +125,7 @@ class ReplayFrames:
         Args:
             run_id: id of a training or race.
             clock: times a race.
-            level: see `stage.playback`.
+            level: see `hexapods.shows.replay`.
             number: number of the segment, from 0.
             ghost_id: id of the run whose lanes are shown as ghosts, as in every method.
 
@@ -132,16 +137,45 @@ class ReplayFrames:
         if (cached := self._encodings.get((version, clock, level, number))) is not None:
             return Segment(cached, version, is_final=True)
         replay = self._replays.get(run_id, clock, ghost_id)
-        key = (replay.version, clock, level, number)
         try:
             times_s = replay.segment_times_s(level, number)
         except NoSuchSegment as error:
             raise NotFound(str(error)) from error
-        is_final = replay.is_complete or len(times_s) == SEGMENT_FRAMES
-        data = self._encoded_once(
-            key, is_final, lambda: encode_frames(replay, times_s, self._stopping.check)
+        key: Hashable = (replay.version, clock, level, number)
+        if not replay.is_complete:
+            # A race that is resumed is recorded anew, and may take other times to decide.
+            key = (key, replay.recording_number, len(times_s))
+        data = self._encoded_once(key, lambda: encode_frames(replay, times_s, self._stopping.check))
+        return Segment(data, replay.version, replay.is_complete)
+
+    def is_encoded(self, run_id: str, clock: Clock, level: int, number: int) -> bool:
+        """Whether a segment of a complete run is encoded already.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
+        return (
+            self._encodings.get((self._replays.version(run_id), clock, level, number)) is not None
         )
-        return Segment(data, replay.version, is_final)
+
+    def piece(self, run_id: str, clock: Clock, level: int, first: int, count: int) -> bytes:
+        """Return consecutive frames of a level, or those of them that are recorded.
+
+        Args:
+            run_id: id of a training or race.
+            clock: times a race.
+            level: see `hexapods.shows.replay`.
+            first: number of the first frame.
+            count: number of frames.
+
+        Raises:
+            NotFound, InvalidInput, Conflict: see `Replays.get`.
+        """
+        replay = self._replays.get(run_id, clock)
+        step_s = interval_s(level)
+        times_s = [number * step_s for number in range(first, first + count)]
+        with self._encoding():
+            return encode_frames(replay, times_s, self._stopping.check)
 
     def encoded(self, run_id: str, clock: Clock) -> EncodedReplay:
         """Return all frames of a run, each encoded when it is asked for.
@@ -159,15 +193,16 @@ class ReplayFrames:
             lambda level, number: self.segment(run_id, clock, level, number).data,
         )
 
-    def _encoded_once(self, key: Hashable, is_final: bool, encode: Callable[[], bytes]) -> bytes:
-        """Return a cached encoding, or encode; cached if final, so that later ones are the same."""
+    def _encoded_once(self, key: Hashable, encode: Callable[[], bytes]) -> bytes:
+        """Return a cached encoding, or encode."""
+        if (cached := self._encodings.get(key)) is not None:
+            return cached
         with self._encoding():
             # Another request for it may have been encoded while this one waited.
             if (cached := self._encodings.get(key)) is not None:
                 return cached
             encoded = encode()
-            if is_final:
-                self._encodings.put(key, encoded)
+            self._encodings.put(key, encoded)
         return encoded
 
     @contextmanager

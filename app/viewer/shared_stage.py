@@ -1,4 +1,4 @@
-"""A stage with viser, hub, event channel, roles and path, shared by many clients."""
+"""A stage with event channel, picture, viewers, roles and path, shared by many clients."""
 
 import asyncio
 from collections.abc import Mapping
@@ -8,25 +8,20 @@ from typing import Self
 
 from app.events.bus import Channel, EventBus
 from app.events.event_records import ViewersEvent
-from app.limits.client_slots import ClientSlots
 from app.stage.roles import Roles
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.viewer.hub import Hub
-from app.viewer.session import Session
-from app.viewer.stage_loop import StageLoop
+from app.viewer.picture_feed import PictureFeed
+from app.viewer.replay_frames import ReplayFrames
 from hexapods.domain.records import Record
-from hexapods.drawing.scene import StageScene
-from hexapods.drawing.track import Position
-from hexapods.drawing.viser_internals.server import in_process_viser
 
 
 class SharedStage:
-    """A stage, viser that draws it, the hub that relays the picture, and the roles of clients.
+    """A stage, the feed of its picture, and the roles of clients.
 
-    Several may be in one process, beside each other: they share the runs, their recordings and the
-    bus, and the slots for viewers. Within `async with` viser, the drawing thread and the hub run.
+    Several may be in one process, beside each other: they share the runs, their recordings and
+    frames, and the bus. Within `async with` the stage advances.
 
     Attributes:
         path: path of its page, without a slash at its end, such as ""; that of the API begins with
@@ -35,7 +30,7 @@ class SharedStage:
         session_path: path of the stage whose sessions operators have here.
         channel: channel of its events, and of those of the runs.
         stage: the stage: which run is shown, and its playback.
-        hub: relays the picture to viewers.
+        viewers: number of pages that watch it.
     """
 
     def __init__(
@@ -44,21 +39,21 @@ class SharedStage:
         recordings: Recordings,
         bus: EventBus,
         *,
+        frames: ReplayFrames,
         roles: Roles,
-        viewer_slots: ClientSlots[Session],
         path: str = "",
         session_path: str | None = None,
         announces: bool = True,
         members: Mapping[str, Record] = MappingProxyType({}),
     ) -> None:
-        """Create an empty stage and its hub; entering the context starts viser and the drawing.
+        """Create an empty stage; entering the context starts its feed.
 
         Args:
             store: store of the runs.
             recordings: recordings of the runs.
             bus: has the events of changed and deleted runs; receives the events of the stage.
+            frames: encodes the frames of runs.
             roles: see the class.
-            viewer_slots: limit the viewers of all stages.
             path: see the class.
             session_path: path of the stage whose sessions operators have here; by default its own.
             announces: whether it shows earlier races by itself.
@@ -68,38 +63,31 @@ class SharedStage:
         self.session_path = path if session_path is None else session_path
         self.channel = Channel(bus)
         self.stage = Stage(store, recordings, self.channel, announces=announces, members=members)
-        self.hub = Hub(
-            follow_position=self._follow_position,
-            slots=viewer_slots,
-            on_viewers_changed=lambda count: self.channel.publish(
-                "viewers", ViewersEvent(count=count)
-            ),
-        )
-        self._scene: StageScene | None = None
+        self.viewers = 0
+        self._feed = PictureFeed(self.stage, frames, self.channel, lambda: self.viewers > 0)
         self._resources = ExitStack()
 
+    @property
+    def pieces(self) -> int:
+        """Number of pieces of the picture that were pushed."""
+        return self._feed.pieces
+
     async def __aenter__(self) -> Self:
-        await asyncio.to_thread(self._open)
-        self.hub.start()
+        self._resources.enter_context(self._feed)
         return self
 
     async def __aexit__(self, *_: object) -> None:
         await self.close()
 
     async def close(self) -> None:
-        """End its event streams, close its viewers, and stop drawing. May be called twice."""
+        """End its event streams, and stop the feed. May be called twice."""
         self.channel.close()
-        await self.hub.stop()
         await asyncio.to_thread(self._resources.close)
 
-    def _open(self) -> None:
-        server = self._resources.enter_context(in_process_viser())
-        self.hub.upstream = server.frames
-        self._scene = StageScene(server)
-        loop = StageLoop(
-            self.stage, self._scene, self.channel, lambda: self.hub.counters.viewers > 0
-        )
-        self._resources.enter_context(loop)
-
-    def _follow_position(self, view: str) -> Position | None:
-        return None if self._scene is None else self._scene.follow_position(view)
+    def count_viewer(self, change: int) -> None:
+        """Count a page that begins to watch (1), or has left (-1). On the event loop."""
+        self.viewers += change
+        self.channel.publish("viewers", ViewersEvent(count=self.viewers))
+        if change > 0:
+            # It need not wait for the next advance.
+            self.stage.changed.set()

@@ -3,15 +3,14 @@
 import gzip
 import hashlib
 import re
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from urllib.parse import urlencode
 
 from starlette.datastructures import QueryParams
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
-from starlette.routing import BaseRoute, Route, WebSocketRoute
-from starlette.websockets import WebSocket
+from starlette.routing import Route
 
 from hexapods.drawing.viser_internals.client import content_policy, patched_page
 
@@ -93,11 +92,8 @@ def viewer_page() -> ViewerPage:
     return ViewerPage()
 
 
-def viewer_routes(serve: Callable[[WebSocket], Awaitable[None]]) -> list[BaseRoute]:
+def viewer_routes() -> list[Route]:
     """Return the routes of `/viewer/`, which spectators may use.
-
-    Args:
-        serve: serves one browser until it disconnects, as `Hub.serve`.
 
     Raises:
         RuntimeError: The patch does not fit the client of the installed viser.
@@ -117,7 +113,4 @@ def viewer_routes(serve: Callable[[WebSocket], Awaitable[None]]) -> list[BaseRou
     return [
         Route("/viewer", add_slash, name="viewer-slash"),
         Route("/viewer/", show, name="viewer"),
-        # viser's unpatched client connects to the path without the slash.
-        WebSocketRoute("/viewer", serve, name="viewer-socket-slash"),
-        WebSocketRoute("/viewer/", serve, name="viewer-socket"),
     ]

@@ -24,7 +24,7 @@ from hexapods.runs.recording import PracticeRecording, pose_at
 from hexapods.runs.records import ActionValues, StepTaken
 from hexapods.shows.race_lane import MARCHING_M, MARCHING_STEPS
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.show import ReplayMark, RunLabel
+from hexapods.shows.show import PlayedShow, ReplayMark, RunLabel
 from hexapods.shows.stage_frame import (
     AT_ORIGIN,
     ActionValuesView,
@@ -47,7 +47,7 @@ EVALUATION_SHOWN_S = 0.6
 _TARGET_LAG_S, _MAX_LAG_S, _CATCH_UP_GAIN = 0.4, 4.0, 0.8
 
 
-class PracticeShow:
+class PracticeShow(PlayedShow):
     """Plays a training's recording while it grows.
 
     Args:
@@ -76,6 +76,7 @@ class PracticeShow:
         self.duration_s = steps * step_s
         """Practice time of all the steps that were ordered [s]."""
         self.ends_at_time_out = False
+        self.time_out_s: float | None = None
         self._pace, self._recording, self._world = pace, recording, world
         self._fell_at_step = fell_at_step
         self._searched = 0
@@ -107,6 +108,11 @@ class PracticeShow:
         return self._run_ended and (
             not self._step_numbers or (self._done or 0) >= self._step_numbers[-1]
         )
+
+    @property
+    def computed_s(self) -> float:
+        """Practice time up to which steps are recorded [s]."""
+        return self._step_numbers[-1] * self._step_s if self._step_numbers else 0.0
 
     @property
     def recorded(self) -> tuple[tuple[float, float], ...]:
@@ -141,21 +147,24 @@ class PracticeShow:
             marks.append(ReplayMark("fall", (fell + 1) * self._step_s, 0, fell, None))
         return sorted(marks, key=lambda mark: mark.time_s)
 
-    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
-        """Advance the playback position; see `Show.advance`."""
+    def update(self, *, run_ended: bool) -> None:
+        """Take in what the training has recorded; see `Show.update`."""
         self._run_ended = run_ended
         self._update()
-        if not self._step_numbers:
-            return
-        if self._done is None:
+        if self._step_numbers and self._done is None:
             self._done = self._step_numbers[0] - 1.0
+
+    def move(self, elapsed_s: float, speed: float | None) -> None:
+        """Advance the playback position; see `Show.move`."""
+        if self._done is None:
+            return
         self._rate = self._playback_rate(speed)
-        before = len(self._ghosts())
+        before = self._ghost_count()
         target = min(self._done + elapsed_s * self._rate / self._step_s, self._step_numbers[-1])
         self._played_s += max(0.0, target - self._done) * self._step_s
         self._done = self._skip_gap(target)
         self._since_evaluation_s += elapsed_s
-        if len(self._ghosts()) > before:
+        if self._ghost_count() > before:
             self._since_evaluation_s = 0.0
 
     def seek(self, time_s: float) -> None:
@@ -195,7 +204,7 @@ class PracticeShow:
             ghosts=tuple(self._ghosts()[-SHOWN_GHOSTS:]),
             time_s=self.time_s,
             duration_s=self.duration_s,
-            computed_s=self._step_numbers[-1] * self._step_s if self._step_numbers else 0.0,
+            computed_s=self.computed_s,
             ended=self.ended,
             shown_speed=self._rate,
             playing=run_label.playing,
@@ -269,8 +278,11 @@ class PracticeShow:
         return max(done, self._step_numbers[index] - 1.0)
 
     def _ghosts(self) -> list[Ghost]:
-        steps = [ghost.step for ghost in self._evaluations]
-        return self._evaluations[: bisect_right(steps, math.floor(self._done or 0.0))]
+        return self._evaluations[: self._ghost_count()]
+
+    def _ghost_count(self) -> int:
+        done = math.floor(self._done or 0.0)
+        return bisect_right(self._evaluations, done, key=attrgetter("step"))
 
     def _current_step(self) -> int:
         """Return the number of the step at the position, from 1; 0 before the first."""

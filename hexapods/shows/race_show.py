@@ -9,10 +9,10 @@ from hexapods.domain.types import FloatArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import SAME_MOMENT_S, Clock
 from hexapods.runs.recording import LaneRecording
-from hexapods.runs.results import time_out_s
+from hexapods.runs.results import time_out_s as time_out_of
 from hexapods.shows.race_lane import RaceLane
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.show import ReplayMark, RunLabel
+from hexapods.shows.show import PlayedShow, ReplayMark, RunLabel
 from hexapods.shows.stage_frame import LaneFrame, Phase, SceneSpec, StageFrame
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
@@ -36,7 +36,7 @@ class Original(NamedTuple):
     lanes: Sequence[LaneRecording]
 
 
-class RaceShow:
+class RaceShow(PlayedShow):
     """Plays a race's recording while it grows, never beyond what every lane has computed.
 
     Args:
@@ -65,6 +65,8 @@ class RaceShow:
         self._lanes: list[RaceLane] = []
         self._source: Sequence[LaneRecording] | None = None
         """The recordings that are played."""
+        self.recording_number = 0
+        """Number of recordings that were played before: a race that is resumed is recorded anew."""
         self._is_final = False
         """Whether the recordings are those of the run since it has ended."""
         self._branch_step = 0
@@ -92,13 +94,18 @@ class RaceShow:
         return self._end_s if self._lanes and self._all_complete else None
 
     @property
-    def first_finish_s(self) -> float | None:
+    def time_out_s(self) -> float | None:
         """Race time of the time-out [s]; None until it is known, see `finish_s`."""
-        return time_out_s(
+        return time_out_of(
             [lane.end_s for lane in self._lanes],
             [lane.all_recorded for lane in self._lanes],
             [lane.recording.failure is not None for lane in self._lanes],
         )
+
+    @property
+    def computed_s(self) -> float:
+        """Race time up to which every lane is computed [s]."""
+        return self._horizon_s
 
     @property
     def recorded(self) -> tuple[tuple[float, float], ...]:
@@ -116,8 +123,8 @@ class RaceShow:
         Marks after the time up to which all lanes are computed are left out.
         """
         marks = []
-        if self.first_finish_s is not None:
-            marks.append(ReplayMark("time-out", self.first_finish_s, None, None, None))
+        if self.time_out_s is not None:
+            marks.append(ReplayMark("time-out", self.time_out_s, None, None, None))
         changes = self._world.change_steps
         for number, lane in enumerate(self._lanes):
             ends = lane.timetable.ends
@@ -134,10 +141,13 @@ class RaceShow:
         in_view = [mark for mark in marks if mark.time_s <= self._horizon_s]
         return sorted(in_view, key=lambda mark: mark.time_s)
 
-    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
-        """Advance the playback position; see `Show.advance`."""
+    def update(self, *, run_ended: bool) -> None:
+        """Take in what the race has recorded; see `Show.update`."""
         self._run_ended = run_ended
         self._update_lanes()
+
+    def move(self, elapsed_s: float, speed: float | None) -> None:
+        """Advance the playback position; see `Show.move`."""
         self._rate = self._automatic_speed if speed is None else speed
         if self._freeze_left_s > 0:
             self._freeze_left_s = max(0.0, self._freeze_left_s - elapsed_s)
@@ -148,7 +158,7 @@ class RaceShow:
         # A resumed race has computed less than was shown.
         self.time_s = min(self.time_s, limit)
         self._waiting = not self._all_complete and self._slow_down_near(limit)
-        target, first = self.time_s + elapsed_s * self._rate, self.first_finish_s
+        target, first = self.time_s + elapsed_s * self._rate, self.time_out_s
         if elapsed_s and limit - target < _SNAP_S:
             target = limit
         if first is not None and self.time_s < first <= target:
@@ -175,7 +185,7 @@ class RaceShow:
         self._update_lanes()
         self._freeze_left_s = 0.0
         self.time_s = min(max(time_s, 0.0), self._horizon_s)
-        for moment_s in (self.first_finish_s, self._horizon_s):
+        for moment_s in (self.time_out_s, self._horizon_s):
             if moment_s is not None and abs(self.time_s - moment_s) <= SAME_MOMENT_S:
                 self.time_s = moment_s
                 return
@@ -188,20 +198,20 @@ class RaceShow:
 
     def seek_end(self) -> None:
         """Set the playback position to where the show ends: time-out, or the last step."""
-        first = self.first_finish_s
+        first = self.time_out_s
         self.seek(math.inf if first is None or not self.ends_at_time_out else first)
 
     def retime(self, clock: Clock) -> None:
         """Change the clock and keep the leading lane at the same moment of its walk."""
         self._update_lanes()
-        at_end, first = self._is_at_end, self.first_finish_s
+        at_end, first = self._is_at_end, self.time_out_s
         at_finish = first is not None and self.time_s == first
         leader = max(self._lanes, key=lambda lane: lane.timetable.at(self.time_s), default=None)
         moment = leader.timetable.at(self.time_s) if leader else None
         self.clock = clock
         for lane in (*self._lanes, *self._original_lanes):
             lane.retime(self.clock)
-        first = self.first_finish_s
+        first = self.time_out_s
         if at_end:
             self.time_s = self._end_s
         elif at_finish and first is not None:
@@ -225,7 +235,7 @@ class RaceShow:
             time_s=self.time_s,
             duration_s=self.duration_s,
             computed_s=self._horizon_s,
-            time_out_s=self.first_finish_s,
+            time_out_s=self.time_out_s,
             ended=self.ended,
             shown_speed=0.0 if self._freeze_left_s else self._rate,
             playing=run_label.playing,
@@ -260,7 +270,7 @@ class RaceShow:
 
     @property
     def _automatic_speed(self) -> float:
-        first = self.first_finish_s
+        first = self.time_out_s
         under_way = sum(
             not self._complete(lane) or self.time_s < lane.end_s for lane in self._lanes
         )
@@ -282,7 +292,7 @@ class RaceShow:
         """Whether playback is at time-out and does not go on."""
         if not self.ends_at_time_out or self._freeze_left_s or self._is_at_end:
             return False
-        return self.time_s > 0 and self.time_s == self.first_finish_s
+        return self.time_s > 0 and self.time_s == self.time_out_s
 
     @property
     def _end_s(self) -> float:
@@ -307,6 +317,7 @@ class RaceShow:
                 return
             if recorded is not self._source:
                 self._source, self._lanes = recorded, self._playing(recorded, self._world)
+                self.recording_number += 1
         self._is_final = self._run_ended
         for lane in (*self._lanes, *self._original_lanes):
             lane.update()
@@ -333,7 +344,7 @@ class RaceShow:
 
     def _with_ranks(self, lanes: tuple[LaneFrame, ...]) -> tuple[LaneFrame, ...]:
         """Rank the lanes by distance now; after time-out by distance at that time."""
-        first = self.first_finish_s
+        first = self.time_out_s
         distances = [lane.distance_m for lane in lanes]
         if first is not None and self.time_s >= first:
             distances = [lane.distance_at(first) for lane in self._lanes]

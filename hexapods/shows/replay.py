@@ -18,7 +18,7 @@ from hexapods.domain.records import Record
 from hexapods.runs.clocks import Clock
 from hexapods.shows.practice_show import PracticeShow
 from hexapods.shows.race_show import RaceShow
-from hexapods.shows.show import ReplayMark, RunLabel
+from hexapods.shows.show import IdleShow, ReplayMark, RunLabel
 from hexapods.shows.stage_frame import StageFrame
 
 FRAMES_PER_S = 30.0
@@ -27,6 +27,22 @@ LOWEST_LEVEL, HIGHEST_LEVEL = -3, 7
 """From 240 frames a second of the run's time to one in 4.3 s."""
 SCENES_PER_S = 5.0
 """Rate at which pages receive the figures of a moment beside its picture."""
+
+
+def level_of(rate: float) -> int:
+    """Return the level at which about 30 frames are shown a second.
+
+    Args:
+        rate: seconds of the run's time per second.
+    """
+    if rate <= 0:
+        return LOWEST_LEVEL
+    return min(max(round(math.log2(rate)), LOWEST_LEVEL), HIGHEST_LEVEL)
+
+
+def interval_s(level: int) -> float:
+    """Return the time between two frames of a level [s]."""
+    return 2.0**level / FRAMES_PER_S
 
 
 class NoSuchSegment(HexapodError):
@@ -80,7 +96,7 @@ class Replay:
 
     def __init__(
         self,
-        show: RaceShow | PracticeShow,
+        show: RaceShow | PracticeShow | IdleShow,
         label: RunLabel,
         ghost: "Replay | None" = None,
         *,
@@ -94,7 +110,7 @@ class Replay:
     def recorded(self) -> tuple[tuple[float, float], ...]:
         """Intervals of the run's time that can be shown [s]; none before it has recorded any."""
         with self._lock:
-            self.show.advance(0.0, 1.0, run_ended=self.is_complete)
+            self.show.update(run_ended=self.is_complete)
             return self.show.recorded
 
     @property
@@ -129,25 +145,33 @@ class Replay:
         """Return the times of a segment's frames that are recorded; the end of the run is the last.
 
         Raises:
-            NoSuchSegment: if the segment is past the end.
+            NoSuchSegment: if the segment is past the end, or nothing is recorded yet.
         """
-        interval_s, end_s = 2.0**level / FRAMES_PER_S, self.recorded[-1][1]
+        recorded = self.recorded
+        if not recorded:
+            raise NoSuchSegment("nothing is recorded yet; request the segment again later")
+        step_s, end_s = interval_s(level), recorded[-1][1]
         first = number * SEGMENT_FRAMES
-        if first * interval_s > end_s:
-            last = math.floor(end_s / interval_s / SEGMENT_FRAMES)
+        if first * step_s > end_s:
+            last = math.floor(end_s / step_s / SEGMENT_FRAMES)
             raise NoSuchSegment(
                 f"the recording ends at {end_s:.2f} s: at level {level} its last segment is {last}"
             )
-        times_s = [(first + n) * interval_s for n in range(SEGMENT_FRAMES)]
-        recorded = [time_s for time_s in times_s if time_s <= end_s]
-        if len(recorded) < SEGMENT_FRAMES and self.is_complete:
-            recorded.append(end_s)
-        return recorded
+        times_s = [(first + n) * step_s for n in range(SEGMENT_FRAMES)]
+        recorded_times_s = [time_s for time_s in times_s if time_s <= end_s]
+        if len(recorded_times_s) < SEGMENT_FRAMES and self.is_complete:
+            recorded_times_s.append(end_s)
+        return recorded_times_s
 
     def frame_at(self, time_s: float) -> StageFrame:
-        """Return the frame at a time [s], or at the nearest that is recorded."""
+        """Return the frame at a time [s], or at the nearest that is recorded.
+
+        That at the time-out of a race is its photo finish.
+        """
         with self._lock:
             self.show.seek(time_s)
             frame = self.show.frame(self.label)
+        if frame.time_s == frame.time_out_s and not frame.ended:
+            frame = replace(frame, phase="photo-finish")
         ghosts = self.ghost.frame_at(frame.time_s).lanes if self.ghost else frame.ghost_lanes
         return replace(frame, spec=self._spec, ghost_lanes=ghosts, shown_speed=1.0)

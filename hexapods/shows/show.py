@@ -1,16 +1,22 @@
 """Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
 
+import copy
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from hexapods.domain.records import Record
+from hexapods.domain.types import FloatArray
 from hexapods.runs.clocks import Clock
+from hexapods.shows.playhead import Point, simplified
 from hexapods.shows.scene_spec import idle_scene, rest_pose
 from hexapods.shows.stage_frame import LaneFrame, SceneSpec, StageFrame
 
 TIME_LAPSE = "time-lapse"
 MIN_SPEED, MAX_SPEED = 0.25, 64
 """Speeds that a user may choose, times real time."""
+_LONGEST_MOVE_S = 1 / 30
+"""Longest time by which playback moves at once [s]: its automatic speed depends on its position."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +70,51 @@ class Show(Protocol):
     def ended(self) -> bool:
         """Whether playback has reached the end of a run that will record no more."""
 
+    @property
+    def computed_s(self) -> float:
+        """Time of the run up to which it is computed, and can be shown [s]."""
+
+    @property
+    def duration_s(self) -> float | None:
+        """Duration of the run [s]; None while it is not known."""
+
+    @property
+    def time_out_s(self) -> float | None:
+        """Time-out of a race [s]; None of others, and until it is known."""
+
+    def update(self, *, run_ended: bool) -> None:
+        """Take in what the run has recorded.
+
+        Args:
+            run_ended: whether it will record no more.
+        """
+
+    def move(self, elapsed_s: float, speed: float | None) -> None:
+        """Advance the playback position by a short time, within what was taken in.
+
+        Args:
+            elapsed_s: real time [s].
+            speed: times real time; None for the show's automatic speed.
+        """
+
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
-        """Advance the playback position.
+        """Take in what the run has recorded, and advance the playback position.
 
         Args:
             elapsed_s: real time since the last call [s]; 0 while playback is paused.
             speed: times real time; None for the show's automatic speed.
             run_ended: whether the run will record no more.
+        """
+
+    def upcoming(self, speed: float | None, longest_s: float) -> list[Point]:
+        """Return the positions to come, from the present one on, as far as they are computed.
+
+        Args:
+            speed: times real time; None for the show's automatic speed.
+            longest_s: real time up to which they are wanted [s].
+
+        Returns:
+            real times from now on [s], each with the time of the run that is shown then [s].
         """
 
     def seek(self, time_s: float) -> None:
@@ -86,10 +130,38 @@ class Show(Protocol):
         """Return the frame at the playback position."""
 
 
+class PlayedShow:
+    """Base class of shows whose position moves by itself."""
+
+    def advance(self: "Show", elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Take in what the run has recorded, and advance the position; see `Show.advance`."""
+        self.update(run_ended=run_ended)
+        left_s = elapsed_s
+        while True:
+            self.move(min(left_s, _LONGEST_MOVE_S), speed)
+            left_s -= _LONGEST_MOVE_S
+            if left_s <= 0:
+                return
+
+    def upcoming(self: "Show", speed: float | None, longest_s: float) -> list[Point]:
+        """Return the positions to come; see `Show.upcoming`."""
+        # What is recorded is shared: only the position of the copy moves.
+        ahead = copy.copy(self)
+        points = [(0.0, ahead.time_s)]
+        while points[-1][0] < longest_s and not ahead.ended:
+            ahead.move(_LONGEST_MOVE_S, speed)
+            points.append((points[-1][0] + _LONGEST_MOVE_S, ahead.time_s))
+        return simplified(points)
+
+
 class IdleShow:
     """Show of an idle stage: robots stand still on the start line."""
 
-    time_s = 0.0
+    time_s = computed_s = 0.0
+    duration_s: float | None = None
+    time_out_s: float | None = None
+    recorded: tuple[tuple[float, float], ...] = ()
+    step_ends_s: Sequence[FloatArray] = ()
     ended = True
     ends_at_time_out = True
 
@@ -99,8 +171,23 @@ class IdleShow:
             LaneFrame(rest_pose(self.spec), 0, 0, 0.0) for _ in self.spec.lane_specs
         )
 
+    def marks(self) -> list[ReplayMark]:
+        """Return none: nothing happens."""
+        return []
+
+    def update(self, *, run_ended: bool) -> None:
+        """Do nothing: the show has no duration."""
+
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
         """Do nothing: the show has no duration."""
+
+    def move(self, elapsed_s: float, speed: float | None) -> None:
+        """Do nothing: the show has no duration."""
+
+    def upcoming(self, speed: float | None, longest_s: float) -> list[Point]:
+        """Return the only position."""
+        del speed, longest_s
+        return [(0.0, 0.0)]
 
     def seek(self, time_s: float) -> None:
         """Do nothing: the show has no duration."""

@@ -124,14 +124,19 @@ def test_a_race_that_is_computed_is_replayed_as_far_as_it_is(parts: StageParts) 
     assert later.plan().duration_s is None
 
 
-def test_a_run_without_recording_has_no_replay(parts: StageParts) -> None:
+def test_a_run_that_ended_without_recording_has_no_replay(parts: StageParts) -> None:
     replays = replays_of(parts)
     with pytest.raises(NotFound):
         replays.get("nothing", "paper")
     lanes = (LaneConfig(agent="greedy"),)
-    queued = parts.create(RaceConfig(gait="left-right-origin", lanes=lanes))
-    with pytest.raises(Conflict, match=f"{queued.id} is queued and has no recording"):
-        replays.get(queued.id, "paper")
+    run = parts.create(RaceConfig(gait="left-right-origin", lanes=lanes))
+    assert replays.get(run.id, "paper").plan().recorded_s == []
+
+    parts.set_state(run, "stopped")
+    with pytest.raises(Conflict, match=f"{run.id} is stopped and has no recording"):
+        replays.get(run.id, "paper")
+    on_start_line = replays.get(run.id, "paper", needs_recording=False).frame_at(1.0)
+    assert on_start_line.phase == "start-line"
 
 
 def test_segments_cover_the_recording_to_its_last_moment(parts: StageParts) -> None:

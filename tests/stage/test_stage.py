@@ -373,12 +373,20 @@ def test_play_after_the_end_restarts_the_show(parts: StageParts) -> None:
     assert parts.next_frame().time_s < 1
 
 
-def test_stall_of_the_process_skips_no_motion(parts: StageParts) -> None:
-    parts.stage.set(run_id=parts.finished_race().id)
-    parts.next_frame()
+def test_after_a_stall_the_picture_follows_the_clock_as_pages_do(parts: StageParts) -> None:
+    parts.stage.set(run_id=parts.finished_race().id, speed=1)
+    before_s = parts.next_frame().time_s
+    parts.now += 1.5
+
+    assert parts.stage.frame().time_s == pytest.approx(before_s + 1.5, abs=0.01)
+
+
+def test_a_machine_that_was_suspended_goes_on_where_it_was(parts: StageParts) -> None:
+    parts.stage.set(run_id=parts.finished_race().id, speed=1)
+    before_s = parts.next_frame().time_s
     parts.now += 60
 
-    assert parts.next_frame().time_s < 2
+    assert parts.stage.frame().time_s < before_s + 2.1
 
 
 def test_unknown_run_is_refused_and_changes_nothing(parts: StageParts) -> None:

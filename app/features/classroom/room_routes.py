@@ -1,19 +1,23 @@
 """Routes of rooms, in which a class goes through a lesson together."""
 
-from collections.abc import AsyncIterator
 from contextlib import suppress
 from typing import Annotated, Any, Literal
 
 from fastapi import Depends, Header, Path, Query, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.sse import ServerSentEvent
 from starlette.responses import Response
 
 from app.api.answers import ComparisonView, DeletedView
 from app.api.contract import LOCATION, TEXT, Schema, answers
 from app.api.cookies import SessionCookie, is_secure
 from app.api.deps import EventListener, IdempotencyKeyHeader, Services, ServicesDep
-from app.api.events import EVENT_STREAM, client_slot, stream_events
+from app.api.events import (
+    EVENT_STREAM,
+    EventStream,
+    PictureQuery,
+    client_slot,
+    stream_events,
+)
 from app.api.formats import attachment, negotiated
 from app.api.identity import charged_client
 from app.api.policy import OPERATOR, WATCH, api_router, policy
@@ -440,8 +444,11 @@ async def get_room_events(
     services: ServicesDep,
     shared: Annotated[SharedStage, Depends(_room_stage)],
     listener: Annotated[EventListener, Depends(client_slot)],
+    *,
+    picture: PictureQuery = False,
     last_event_id: Annotated[str | None, Header()] = None,
-) -> AsyncIterator[ServerSentEvent]:
+) -> Response:
     """Stream a `snapshot` event, then changes, as `/r/CODE/api/v1/events` does."""
-    async for event in stream_events(services, shared, None, listener, last_event_id):
-        yield event
+    return EventStream(
+        stream_events(services, shared, None, listener, last_event_id, has_picture=picture)
+    )
