@@ -155,7 +155,7 @@ class Stage:
         """When playback was last advanced, by the clock."""
         self._playhead = self._planned(self._last_s)
         self.changed = threading.Event()
-        """Set whenever a `stage` event is published; who waits for it clears it."""
+        """Set when somebody has changed what is shown; who waits for it clears it."""
 
     def restore(self) -> None:
         """Show the end of the run that was last at work, after a start of the server.
@@ -214,6 +214,7 @@ class Stage:
             if self._state.is_held and self._run_id not in wanted:
                 return run_id in self._runs
             self._load(wanted, "started")
+            self.changed.set()
             return True
 
     def set(
@@ -269,6 +270,7 @@ class Stage:
                 self._show.seek(time_s)
             self._follow_picture()
             self._publish()
+            self.changed.set()
 
     def state(self) -> StageView:
         """Return the state of playback, with the members that features add."""
@@ -573,7 +575,6 @@ class Stage:
     def _publish(self) -> None:
         self._playhead = self._planned(self.now())
         self._channel.publish("stage", self.state())
-        self.changed.set()
 
 
 def _staged(run: Run) -> StagedRun:

@@ -117,6 +117,7 @@ class PictureFeed:
 
     def _run(self) -> None:
         while not self._stop.is_set():
+            self._stage.changed.clear()
             try:
                 self._advance()
             except Exception:
@@ -127,7 +128,6 @@ class PictureFeed:
             else:
                 self._has_failed = False
             self._stage.changed.wait(1 / _ADVANCES_PER_S)
-            self._stage.changed.clear()
 
     def _advance(self) -> None:
         is_replanned = self._stage.advance()
@@ -155,7 +155,7 @@ class PictureFeed:
                 self._channel.publish("piece", self._event(picture, piece, data))
                 is_pushed = True
                 self.pieces += 1
-                if self._stage.picture()[:3] != picture[:3] or self._stage.changed.is_set():
+                if self._stage.changed.is_set():
                     break
         except HexapodError:
             pass  # deleted meanwhile, or the server stops; events of the stage tell
