@@ -39,6 +39,8 @@ _PLANNED_S, _PLANNED_LIVE_S = 20.0, 3.0
 """Real time for which playheads are planned [s], also of runs that are still computed."""
 _NEARLY_USED_UP_S = 1.0
 """Real time that is left of a playhead when the next one is planned [s]."""
+_GROWTH_TOLD_S = 1.0
+"""Time after which it is told that more is computed, while the picture is held [s]."""
 _DRIFT_S = 0.1
 """Real time by which the picture may be off its playhead [s]."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
@@ -361,7 +363,10 @@ class Stage:
         off = abs(before.time_at(now) - show.time_s)
         is_off = off > _DRIFT_S * max(before.rate_at(now), 1.0)
         is_used_up = not is_held and before.rate > 0 and before.ends_s - now < _NEARLY_USED_UP_S
-        if not (is_off or is_used_up or before.computed_s != show.computed_s):
+        # Of a picture that is held, only the time bar shows what is computed.
+        has_grown = before.computed_s != show.computed_s
+        has_grown &= not is_held or now - before.at_s >= _GROWTH_TOLD_S
+        if not (is_off or is_used_up or has_grown):
             return False
         self._playhead = self._planned(now)
         return True

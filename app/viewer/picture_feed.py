@@ -21,7 +21,7 @@ _LEAD_S = 1.5
 _FIRST_FRAMES = 8
 """Number of frames that are pushed first after a jump, as they are encoded sooner."""
 _FRAMES_AT_TAIL = 12
-"""Least number of frames of a piece at the tail of a run that is computed, unless they are due."""
+"""Least number of frames of a piece of a run that is still computed, unless they are due."""
 _DUE_S = 0.35
 """Real time before a frame is shown at which it is due [s]."""
 _SAME_S = 1e-6
@@ -62,6 +62,11 @@ class _Piece(NamedTuple):
     frames: int
     time_s: float
     """Time of the first frame [s]."""
+
+    @property
+    def is_segment(self) -> bool:
+        """Whether it is a segment as pages can fetch it."""
+        return self.frames == SEGMENT_FRAMES
 
     @property
     def end_s(self) -> float:
@@ -178,7 +183,7 @@ class PictureFeed:
         run_id, clock = picture.run_id or "", picture.clock
         if piece.level is None or piece.first is None:
             return self._frames.moment(run_id, clock, piece.time_s)
-        if piece.frames == SEGMENT_FRAMES:
+        if piece.is_segment:
             number = piece.first // SEGMENT_FRAMES
             return self._frames.segment(run_id, clock, piece.level, number).data
         return self._frames.piece(run_id, clock, piece.level, piece.first, piece.frames)
@@ -202,7 +207,7 @@ class PictureFeed:
             piece = self._next(picture, end_s, due_s, is_due=due_s < now_s + _DUE_S)
             if piece is None:
                 return
-            if is_jump and piece.frames == SEGMENT_FRAMES and not self._is_encoded(picture, piece):
+            if is_jump and piece.is_segment and not self._is_encoded(picture, piece):
                 yield self._first_frames(picture, piece, end_s)
             is_jump = False
             yield piece
@@ -241,13 +246,13 @@ class PictureFeed:
         level = level_of(max(rates))
         step_s = interval_s(level)
         frame = int((time_s + _SAME_S) / step_s)
-        segment = frame - frame % SEGMENT_FRAMES
-        recorded = int((playhead.computed_s + _SAME_S) / step_s) + 1
-        if not picture.is_computed or recorded >= segment + SEGMENT_FRAMES:
+        if not picture.is_computed:
+            segment = frame - frame % SEGMENT_FRAMES
             if segment * step_s > playhead.computed_s:
                 return None
             return _Piece(level, segment, SEGMENT_FRAMES, segment * step_s)
-        count = recorded - frame
+        recorded = int((playhead.computed_s + _SAME_S) / step_s) + 1
+        count = min(recorded - frame, SEGMENT_FRAMES - 1)
         if count < (2 if is_due else _FRAMES_AT_TAIL):
             return None
         return _Piece(level, frame, count, frame * step_s)
