@@ -4,7 +4,6 @@ import hashlib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from threading import Lock
 from types import MappingProxyType
 from typing import Annotated, Any, NamedTuple, TypeVar
 
@@ -63,7 +62,6 @@ class Services:
         new_stage: makes a further stage with a path, which uses the sessions of the first.
         features: features of the server.
         page_files: folders of the files of the page.
-        stream_lock: held while a race is encoded as a recorded stream for viser.
         downloads: memory budget of files that clients are still reading.
         shared_answers: encoded views of runs, which all pages that watch one request at once.
     """
@@ -82,7 +80,6 @@ class Services:
     new_stage: Callable[[str], SharedStage]
     features: Features
     page_files: PageFiles
-    stream_lock: Lock = field(default_factory=Lock)
     downloads: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     shared_answers: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
     _provided: dict[type, Any] = field(default_factory=dict)

@@ -97,7 +97,7 @@ VALID: dict[str, str] = {
     "number": "a whole number, 0 or more",
     "version": "the version of the plan, which makes a whole segment immutable",
     "settings": "an object with the agent's settings, by name",
-    "format": "a format that the description of the route names",
+    "format": "a format of the route",
 }
 
 
@@ -132,8 +132,17 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
     if not names:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
-    valid = VALID.get(field) or VALID.get(names[-1]) or _length(error) or "given"
+    valid = _formats(names[-1], error) or VALID.get(field) or VALID.get(names[-1])
+    valid = valid or _length(error) or "given"
     return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."
+
+
+def _formats(name: str, error: Mapping[str, Any]) -> str | None:
+    """Return the formats of the route in words; None if the error is about another field."""
+    if name != "format" or error["type"] != "literal_error":
+        return None
+    expected: str = error["ctx"]["expected"]
+    return expected.replace("'", "")
 
 
 _OF_LENGTH = {"too_short": ("at least", "min_length"), "too_long": ("at most", "max_length")}

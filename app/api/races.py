@@ -5,9 +5,7 @@ from collections.abc import Iterator
 from typing import Annotated, Literal
 
 from fastapi import Query, Request
-from starlette.datastructures import QueryParams
 from starlette.responses import Response, StreamingResponse
-from starlette.types import Scope
 
 from app.api.answers import RacePage
 from app.api.compression import gzipped
@@ -17,16 +15,13 @@ from app.api.formats import attachment, negotiated
 from app.api.policy import WATCH_RUN, policy
 from app.api.recorded_answers import RecordingView
 from app.api.runs import RunPath, find, run_routes
-from app.api.work import ANALYSIS, DOWNLOAD, ENCODING, Work
+from app.api.work import ANALYSIS, DOWNLOAD
 from app.events.run_view import RaceView
-from app.stage.playback import original_of
 from app.stage.timeline import TimelineView, timeline
-from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
 from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.records import to_json_bytes
 from hexapods.exports import recording_json
-from hexapods.exports.recorded_stream import recorded_stream
 from hexapods.runs.clocks import Clock
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -34,34 +29,22 @@ from hexapods.runs.recording import LaneRecording
 router = run_routes("race", RaceView, RacePage)
 
 
-def _work_of_recording(scope: Scope) -> Work:
-    """Return the kind of work of a recording: as a stream for viser it takes long to encode."""
-    # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.
-    formats = QueryParams(scope["query_string"]).getlist("format")
-    return ENCODING if "viser" in formats else DOWNLOAD
-
-
 @router.get(
     "/{run_id}/recording",
-    summary="Get a race's recording (JSON, .npz, viser)",
+    summary="Get a race's recording (JSON, .npz)",
     response_model=RecordingView,
-    responses=answers(200, {"application/x-npz": BINARY, "application/octet-stream": BINARY}),
+    responses=answers(200, {"application/x-npz": BINARY}),
 )
-@policy(access=WATCH_RUN, work=_work_of_recording)
+@policy(access=WATCH_RUN, work=DOWNLOAD)
 def get_recording(
     services: ServicesDep,
     request: Request,
     run_id: RunPath,
-    format: Annotated[Literal["json", "npz", "viser"] | None, Query()] = None,  # noqa: A002
-    clock: Annotated[Clock, Query()] = "paper",
+    format: Annotated[Literal["json", "npz"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
-    """Joint positions over time; `viser`, timed by `clock`, is for `/viewer/?playbackPath=…`."""
+    """Return joint positions over time; as arrays once the race has ended."""
     run, config, _ = _find_recorded(services, run_id)
-    kind = negotiated(request, format, ("json", "npz"))
-    if kind == "viser":
-        stream = _recorded_stream(services, run, config, clock)
-        return attachment(stream, "application/octet-stream", f"race-{run_id}.viser")
-    if kind == "npz":
+    if negotiated(request, format, ("json", "npz")) == "npz":
         arrays = _stored_recording(services, run)
         return attachment(arrays, "application/x-npz", f"race-{run_id}.npz")
     chunks = recording_json.as_json(
@@ -107,26 +90,6 @@ def _stored_recording(services: Services, run: Run) -> Iterator[bytes]:
             f"race {run.id} is {run.state}; its arrays are available once it has ended", run.state
         )
     return arrays
-
-
-def _recorded_stream(
-    services: Services, run: Run, config: RaceConfig, clock: Clock
-) -> ArtifactFile:
-    """Return the race as a recorded stream; cached as an artifact, as encoding takes seconds."""
-    lanes = services.recordings.race(run.id)
-    if run.state in NOT_ENDED or lanes is None:
-        raise Conflict(
-            f"race {run.id} is {run.state}; its recorded stream is available once it has ended",
-            run.state,
-        )
-    name = f"film-{clock}.viser"
-    while (stream := services.store.open_artifact(run.id, name)) is None:
-        original = original_of(config, services.store, services.recordings)
-        check = services.stopping.check
-        with services.stopping.holding(services.stream_lock):
-            encoded = recorded_stream(config, lanes, run.name, clock, original, check=check)
-        services.store.put_artifact(run.id, name, encoded)
-    return stream
 
 
 def _find_recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:

@@ -2,7 +2,6 @@
 
 import gzip
 import hashlib
-import re
 from collections.abc import Mapping
 from functools import cache
 from urllib.parse import urlencode
@@ -28,7 +27,6 @@ ALLOWED_QUERY = frozenset(
         "fixedDpr",
     }
 )
-_RECORDING = re.compile(r"/api/v1/races/[\w-]+/recording(\?[\w=&.-]*)?", re.ASCII)
 
 
 def sanitized_query(query: QueryParams) -> str | None:
@@ -36,14 +34,10 @@ def sanitized_query(query: QueryParams) -> str | None:
 
     viser's client would connect to any `websocket` and play any `playbackPath`, and run scripts
     from there, so that a link to our own page could inject them. Allowed are parameters that only
-    change the appearance, and recordings of this server.
+    change the appearance.
     """
     items = query.multi_items()
-    allowed = [
-        (name, value)
-        for name, value in items
-        if name in ALLOWED_QUERY or (name == "playbackPath" and _RECORDING.fullmatch(value))
-    ]
+    allowed = [(name, value) for name, value in items if name in ALLOWED_QUERY]
     return None if len(allowed) == len(items) else urlencode(allowed)
 
 

@@ -46,7 +46,7 @@ class StageScene:
         self._smoothed: tuple[float, float] | None = None
         self._lamp_y_m = 0.0
         with server.atomic():
-            self._ground = draw_ground(server)
+            self._lamp = draw_ground(server)
 
     def draw(self, frame: StageFrame, now: float = math.inf) -> bool:
         """Draw a frame.
@@ -75,20 +75,12 @@ class StageScene:
         """Return the follow point of a view on the track [m]: `leader`, or a lane from `1`."""
         return self._follow_positions.get(view)
 
-    def centre_world_on(self, view: str) -> None:
-        """Translate the world so that a view's follow point is centred, for all clients.
-
-        On the live stage the hub does this per viewer; a recorded stream has only one view.
-        """
-        x, y, _ = self._follow_positions[view]
-        self._ground.world.position = (-x, -y, 0.0)
-
     def _move_lamp(self, y_m: float) -> None:
         """Move the lamp along the track to y [m]."""
         if y_m != self._lamp_y_m:
             self._lamp_y_m = y_m
             x, y, z = LAMP
-            self._ground.lamp.position = (x, y + y_m, z)
+            self._lamp.position = (x, y + y_m, z)
 
     def _update_follow_positions(self, frame: StageFrame, xs: list[float], now: float) -> bool:
         """Update the follow points; True while the leader's is still moving.

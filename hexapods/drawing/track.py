@@ -1,7 +1,5 @@
 """The track: ground with a grid of 0.5 m, lights, lanes with ticks, start and finish line."""
 
-from typing import NamedTuple
-
 import numpy as np
 import viser
 
@@ -34,24 +32,19 @@ _RED: Rgb = (176, 16, 20)
 """Darker than intended, since the lamp brightens them."""
 
 
-class Ground(NamedTuple):
-    """Handles of the parts that move."""
-
-    world: viser.FrameHandle
-    """Root node of the scene."""
-    lamp: viser.SpotLightHandle
-
-
-def draw_ground(server: viser.ViserServer) -> Ground:
+def draw_ground(server: viser.ViserServer) -> viser.SpotLightHandle:
     """Draw the parts that do not depend on the run: ground, lights, initial camera.
 
     The ground is translucent and fades out into the page's background, since the light or dark
     theme is a setting of each viewer, while the scene is shared by all.
+
+    Returns:
+        the lamp, which moves with the robots.
     """
     scene = server.scene
     scene.set_up_direction("+z")
     scene.world_axes.visible = False
-    world = scene.add_frame(WORLD, show_axes=False)
+    scene.add_frame(WORLD, show_axes=False)
     scene.add_grid(
         f"{WORLD}/ground",
         cell_size=SQUARE_M,
@@ -71,7 +64,7 @@ def draw_ground(server: viser.ViserServer) -> Ground:
     camera = server.initial_camera
     camera.position, camera.look_at = (0.0, -1.52, 0.80), (0.0, 0.12, 0.05)
     camera.fov = np.deg2rad(42)
-    return Ground(world, lamp)
+    return lamp
 
 
 def _light(scene: viser.SceneApi) -> viser.SpotLightHandle:

@@ -9,7 +9,7 @@
 - `replay_page`: a page that replays a run without a server.
 - `video`, `video_pictures`: MP4 and GIF, rendered off screen by MuJoCo.
 - `mcap_log`: joint states and frames for tools of robots.
-- `recording_json`, `recorded_stream`: a race's recording as JSON, and for viser's player.
+- `recording_json`: a race's recording as JSON.
 - `servo_map`, `servo_map_file`, `servo_walk`, `servo_files`: a walk as pulses of a real robot's
   servos. It needs a map of them, which no request has, so it is no format of the registry. To add a
   map: a file in `servo_maps`, named in `BUILT_IN_MAPS` of `servo_map`.

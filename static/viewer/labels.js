@@ -79,35 +79,17 @@
     }
   };
 
-  // ---- messages that come by the client's queue: those of a playback, and those that a page draws by itself
+  // ---- messages that a page draws by itself come by the client's queue
 
-  const isPlayback = new URLSearchParams(location.search).has("playbackPath");
   let client;
   /** Drawn before the client has a queue: nobody sends them again. */
   const early = [];
 
-  // Both push the same objects whenever they draw them again, so they are copied.
+  // A page pushes the same objects whenever it draws them again, so they are copied.
   const copyOf = (message) => {
     const copy = { ...message };
     for (const part of ["props", "updates"]) if (message[part]) copy[part] = { ...message[part] };
     return copy;
-  };
-
-  /** Take labels out of all that is pushed; the recording's first message begins it anew. */
-  const watchQueue = (queue) => {
-    let first = null;
-    const waiting = queue.splice(0);
-    queue.push = (...messages) => {
-      const copies = messages.map((message) => {
-        first ??= message;
-        if (message === first) [...labels.keys()].forEach(remove);
-        const copy = copyOf(message);
-        take(copy);
-        return copy;
-      });
-      return Array.prototype.push.apply(queue, copies);
-    };
-    queue.push(...waiting);
   };
 
   const draw = (messages) => {
@@ -126,8 +108,7 @@
     get: () => client,
     set: (value) => {
       client = value;
-      if (isPlayback) watchQueue(client.messageQueue);
-      else draw(early.splice(0));
+      draw(early.splice(0));
     },
   });
 
@@ -156,7 +137,7 @@
   const inOrder = () => [...labels.values()].sort((a, b) => isFixed(a) - isFixed(b));
   const isFixed = ({ anchor }) => anchor.startsWith("center");
 
-  /** Size of the picture [px]; below that of a playback is its seek bar. */
+  /** Size of the picture [px]. */
   const pictureSize = () => {
     const { clientWidth, clientHeight } = window.__viserMutable.canvas;
     return { width: clientWidth, height: clientHeight };

@@ -40,7 +40,6 @@
     root.toggleAttribute("data-projected", data.isProjected === true);
   });
   setTheme(query.get("theme"));
-  if (query.has("playbackPath")) root.dataset.playback = "";
 
   // ---- viser's websocket lives in a worker, through which the view is sent to the hub
   const sendView = () =>

@@ -90,8 +90,6 @@ FURTHER: list[tuple[str, str]] = [
     ("GET", "/?token=wrong"),
     ("GET", f"/?token={TOKEN}"),
     ("GET", "/docs?token=wrong"),
-    ("GET", "/api/v1/races/{run_id}/recording?format=viser"),
-    ("GET", "/api/v1/races/{run_id}/recording?format=vise%72"),
 ]
 """Requests besides those of the routes: paths and methods without a route, and queries."""
 

@@ -14,12 +14,14 @@ from app.server import create_app
 from app.settings import Settings
 from app.storage.errors import Busy
 from tests.api.calls import ADDRESS, WALK, Api, refused
+from tests.features.needing import needs
 from tests.storage.stores import temporary_store
 
 TOKEN = "a-token-for-tests"
 Serve = Callable[..., Api]
 
 
+@needs("exports")
 def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
     api = serve(starts_per_minute=3)
     for _ in range(3):
@@ -28,8 +30,7 @@ def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
         answer = api.call("POST", path, json={})
         refused(answer, 429, "3 times a minute", "HEXAPODS_STARTS_PER_MINUTE")
         assert 1 <= int(answer.headers["retry-after"]) <= 20
-    stream = "/races/x/recording?format=viser"
-    refused(api.call("GET", stream), 429)
+    refused(api.call("GET", "/runs/x/page"), 429)
     for method, path in (("GET", "/trainings"), ("POST", "/trainings/x/stop"), ("PUT", "/stage")):
         assert api.call(method, path, json={}).status_code != 429
 
@@ -55,11 +56,11 @@ def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
     assert limited == starts
 
 
+@needs("exports")
 def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
     api = serve(starts_per_minute=1, token=TOKEN)
-    stream = "/races/x/recording?format=viser"
-    refused(api.call("GET", stream), 404)
-    refused(api.call("GET", stream), 429)
+    refused(api.call("GET", "/runs/x/page"), 404)
+    refused(api.call("GET", "/runs/x/page"), 429)
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     refused(api.call("POST", "/trainings", json={}, headers=bearer), 422)
 

@@ -291,14 +291,11 @@ def test_all_options_can_be_started(api: Api) -> None:
     assert set(options["limits"]) <= set(options["help"])
 
 
-def test_recorded_stream_plays_in_the_viewer(api: Api) -> None:
-    race = api.finished(api.race(lanes=[{"agent": "greedy"}], steps=3))
-    path = f"/races/{race['id']}/recording?format=viser"
-    stream = api.call("GET", path)
-    assert stream.status_code == 200
-    assert len(stream.content) > 1000
-    assert api.call("GET", path).content == stream.content
-    assert api.client.get("/viewer/", params={"playbackPath": f"/api/v1{path}"}).status_code == 200
+def test_another_format_of_a_recording_is_refused_with_those_that_there_are(
+    raced: dict[str, Any], api: Api
+) -> None:
+    path = f"/races/{raced['id']}/recording"
+    refused(api.call("GET", path, params={"format": "viser"}), 422, "format must be json or npz.")
 
 
 def test_race_is_replayed_by_each_page_for_itself(raced: dict[str, Any], api: Api) -> None:

@@ -158,7 +158,8 @@ def test_only_the_app_listens_and_no_connection_leaves_the_machine(
             for run in runs[:2]:
                 assert server.in_state(run, "finished", "failed")["state"] == "finished"
             wait_for_trials(server, runs[2])
-            server.client.get(f"/api/v1/races/{runs[1]['id']}/recording?format=viser")
+            page = server.client.get(f"/api/v1/runs/{runs[1]['id']}/page")
+            assert page.status_code == 200, page.text
             # Sample the sockets that are left after the runs' ends, too.
             seen = sockets.samples
             while sockets.samples < seen + 2:

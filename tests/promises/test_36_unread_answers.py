@@ -3,7 +3,7 @@ cost the server less than 100 MB, and so do 25 of every other heavy answer. So d
 race, of 20,000 steps of its lanes: while it runs, when it ends, and whatever is read of it.
 
 The largest table is one of 8 divisions, 52,728,000 values, as JSON, CSV and `.npz`. Beside it a
-race's recording, its arrays, its recorded stream and its timeline, an experiment's trials, report
+race's recording, its arrays and its timeline, an experiment's trials, report
 and files, curves, and exports. The gate's form has a table of 400,000 values that were visited,
 and five of these answers; `make soak` has 2,500,000 values, and all of the answers.
 """
@@ -52,7 +52,7 @@ TABLES = at_length(
 )
 RACES = at_length(
     ("recording", "timeline"),
-    ("recording", "recording?format=npz", "recording?format=viser", "timeline", "export"),
+    ("recording", "recording?format=npz", "timeline", "export"),
 )
 EXPERIMENTS = ("trials", "trials?format=csv", "summary", "report", "files/trials.csv", "export")
 

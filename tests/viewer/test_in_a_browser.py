@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, FloatRect, Frame, Page
-from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import HTMLResponse
 from starlette.routing import Route
 
 from app.limits.client_slots import ClientSlots
@@ -35,20 +34,6 @@ DASHBOARD = """
 POSITIONS: dict[str, Position] = {"1": (1.0, 0.5, 0.0), "2": (2.0, 0.0, 0.0)}
 
 
-class Recording:
-    """Endpoint that serves a recorded stream in viser's format."""
-
-    data = b""
-
-    def send(self, _: Request) -> Response:
-        return Response(self.data)
-
-
-@pytest.fixture
-def recording() -> Recording:
-    return Recording()
-
-
 class Scene:
     """viser's scene with one box, and its stream to a hub."""
 
@@ -63,11 +48,10 @@ class Scene:
 
 
 @contextmanager
-def serving_scene(scene: Scene, recording: Recording) -> Iterator[ServedHub]:
+def serving_scene(scene: Scene) -> Iterator[ServedHub]:
     more_routes = [
         Route("/", lambda _: HTMLResponse(DASHBOARD)),
         Route("/empty", lambda _: HTMLResponse("<!doctype html><iframe></iframe>")),
-        Route("/api/v1/races/{id}/recording", recording.send),
     ]
     hub = Hub(scene.upstream.frames, follow_position=POSITIONS.get)
     with serving(hub, more_routes=more_routes) as served:
@@ -75,8 +59,8 @@ def serving_scene(scene: Scene, recording: Recording) -> Iterator[ServedHub]:
 
 
 @pytest.fixture
-def served(viser_server: InProcessViser, recording: Recording) -> Iterator[ServedHub]:
-    with serving_scene(Scene(viser_server), recording) as served:
+def served(viser_server: InProcessViser) -> Iterator[ServedHub]:
+    with serving_scene(Scene(viser_server)) as served:
         yield served
 
 
@@ -90,7 +74,7 @@ def scene() -> Iterator[Scene]:
 @pytest.fixture(scope="module")
 def watched_hub(scene: Scene) -> Iterator[ServedHub]:
     """The hub whose viewers are those of `dashboard` alone."""
-    with serving_scene(scene, Recording()) as served:
+    with serving_scene(scene) as served:
         yield served
 
 
@@ -371,34 +355,6 @@ def test_all_requests_go_to_the_own_origin(page: Page, served: ServedHub) -> Non
     assert errors == []
     page.reload()
     wait_for_node(page, "/world/box")
-
-
-def test_recording_plays_with_a_seek_bar(
-    page: Page, served: ServedHub, recording: Recording
-) -> None:
-    viser_server = start_viser()
-    serializer = viser_server.get_scene_serializer()
-    label = viser_server.scene.add_label("/world/label", "step 0")
-    for step in range(10):
-        viser_server.scene.add_box("/world/step", dimensions=(step + 1, 1, 1))
-        label.text = f"step {step}"
-        serializer.insert_sleep(0.1)
-    recording.data = serializer.serialize()
-    viser_server.stop()
-
-    page.goto(f"{served.page}?playbackPath=/api/v1/races/7/recording")
-
-    wait_for_node(page, "/world/step")
-    page.wait_for_selector(".mantine-Slider-root", state="visible")
-    assert served.hub.counters.viewers == 0
-    # Its labels are the page's own and not viser's, also when it begins again.
-    for text in ("step 9", "step 0", "step 9"):
-        page.wait_for_function(
-            "text => document.querySelector('.labels > div:not([hidden])')?.textContent === text",
-            arg=text,
-        )
-    label_of_viser = "window.__viserSceneTree.getState()['/world/label'].message.props.text"
-    assert page.evaluate(label_of_viser) == ""
 
 
 def test_an_attempt_to_connect_is_not_given_up_for_the_next_one(

@@ -45,7 +45,7 @@ Assumed by `client`:
 - worker_messages: the websocket lives in a worker that takes `set_server`, `retry` and `send`, and
   reports `connected` and `closed`, with `versionMismatch` (for close code 1002) and `closeReason`;
   it closes an attempt to connect after five seconds.
-- query_parameters: the client reads `websocket`, `playbackPath` and those of `ALLOWED_QUERY` of
+- query_parameters: the client reads `websocket` and those of `ALLOWED_QUERY` of
   `app/viewer/viewer_page.py`.
 - reconnects_with_focus: the client reconnects only while `document.hasFocus()`.
 - code_from_strings: the client calls `Function` only for `RunJavascriptMessage`, which is blocked,
@@ -56,11 +56,10 @@ Assumed by `client`:
 - controls_have_these_selectors: `static/viewer/patch.css` hides viser's controls by attributes and
   class names of its page.
 - labels_are_taken_out: the worker posts messages as `message_batch`, which the client reads after
-  `static/viewer/labels.js` has emptied the labels in it, and `__viserMutable` has the camera, the
+  `static/viewer/labels.js` has emptied the labels in it, and pushes to `messageQueue` of
+  `__viserMutable`, as the page does with what it draws by itself. There are also the camera, the
   canvas, the scene, of which `onAfterRender` is free, and the poses and objects of scene nodes by
-  name. A playback pushes its messages to the `messageQueue` there, the first one again whenever it
-  begins again; it is assigned to the window once, with its queue, before that is read. What is
-  pushed before has to be kept.
+  name. It is assigned to the window once, with its queue.
 - clicks_go_through_the_worker: `SetSceneNodeClickBindingsMessage` makes a node clickable, by button
   and modifier; a click without a drag is sent through the worker as a `SceneNodeClickMessage`,
   with the number of the instance of a batched mesh, so that `static/viewer/clicks.js` can keep it.

@@ -91,8 +91,6 @@ def test_path_without_slash_redirects(client: TestClient) -> None:
     [
         "view=leader&theme=dark",
         "initialCameraPosition=1,2,3&showStats=",
-        "playbackPath=%2Fapi%2Fv1%2Fraces%2F3f-2_b%2Frecording%3Fformat%3Dviser",
-        "playbackPath=/api/v1/races/7/recording",
     ],
 )
 def test_allowed_query_parameters_are_accepted(client: TestClient, query: str) -> None:
@@ -104,10 +102,7 @@ def test_allowed_query_parameters_are_accepted(client: TestClient, query: str) -
     [
         "websocket=ws://evil.example",
         "playbackPath=https://evil.example/x.viser",
-        "playbackPath=//evil.example/api/v1/races/7/recording",
-        "playbackPath=/api/v1/races/../../x/recording",
-        "playbackPath=/api/v1/races/7/recording%23",
-        "playbackPath=/api/v1/races/7/recording%0a",
+        "playbackPath=/api/v1/races/7/recording",
         "playbackPath=/api/v1/races/7/recording&playbackPath=data:,x",
         "playbackpath=x",
         "unheard=of",
@@ -116,11 +111,7 @@ def test_allowed_query_parameters_are_accepted(client: TestClient, query: str) -
 def test_other_parameters_are_removed(client: TestClient, query: str) -> None:
     target = location(client, f"/viewer/?view=2&{query}&theme=light")
 
-    remaining = parse_qs(urlsplit(target).query)
-    assert remaining.pop("playbackPath", ["/api/v1/races/7/recording"]) == [
-        "/api/v1/races/7/recording"
-    ]
-    assert remaining == {"view": ["2"], "theme": ["light"]}
+    assert parse_qs(urlsplit(target).query) == {"view": ["2"], "theme": ["light"]}
     assert client.get(f"/viewer/{target}").status_code == 200
 
 
