@@ -4,7 +4,7 @@
   `lane_ground`, `payload_and_push`, `condition_colors`. `temporary` are nodes that come and go.
 - `robot_mesh` builds meshes from the MJCF; `shapes` and `colormap` are its primitives.
 - `replay_encoding` encodes a replay's frames as messages that a page plays by itself, and ghosts of
-  `posture`.
+  `posture`; `pose_tracks` compresses the poses in them.
 - `viser_internals` has all that rests on viser's private parts, and the list of what is assumed. To
   take a new version of viser, pin it in pyproject.toml and run
   `tests/drawing/viser_internals`: each assumption that it breaks is named by a test.

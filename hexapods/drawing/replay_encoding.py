@@ -4,11 +4,11 @@ The first frame of a segment says all that differs from the scene at the start o
 ones what changed since the one before. So a page that has the scene (`encode_scene`) needs one
 segment to be at any moment of it.
 
-An encoding, compressed with gzip, is `u32 size of the JSON, little-endian | JSON | arrays`, each
-array aligned to 8 bytes. Poses of links are rounded to `POSE_STEP`. The JSON has `lengths` of the
-arrays [bytes] and `frames`, each with its `time_s`, its viser `messages`, which name an array as
-viser does (`{"__binary_index": 3, "dtype": "<f4"}`), `follow`, the position of each view [m], and
-now and then `scene`, the figures of the moment.
+An encoding, compressed with gzip, is `u32 size of the JSON, little-endian | JSON | poses | arrays`;
+`docs/replays.md` describes it. The JSON has `frames`, each with its `time_s`, its viser `messages`,
+`follow`, the position of each view [m], and now and then `scene`, the figures of the moment. A
+message that is just a pose is the number of its track, see `hexapods.drawing.pose_tracks`; others
+name an array as viser does (`{"__binary_index": 3, "dtype": "<f4"}`).
 """
 
 import gzip
@@ -18,16 +18,16 @@ from dataclasses import replace
 from typing import Any
 
 import msgspec
-import numpy as np
 
 from hexapods.domain.records import to_json
 from hexapods.domain.types import Cells
+from hexapods.drawing.pose_tracks import PoseTracks, pose_arrays, rounded_poses
 from hexapods.drawing.posture import draw_posture
 from hexapods.drawing.scene import StageScene, grid_root
 from hexapods.drawing.track import WORLD
 from hexapods.drawing.viser_internals.recorder import Recorded, recorder
 from hexapods.drawing.viser_internals.server import in_process_viser
-from hexapods.drawing.viser_internals.stream import LIFECYCLES, array_index, remap_buffers
+from hexapods.drawing.viser_internals.stream import LIFECYCLES, Message, remap_buffers
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S, Replay
 from hexapods.shows.scene_view import scene_view
 from hexapods.shows.stage_frame import StageFrame
@@ -36,14 +36,6 @@ _FRAMES_PER_SCENE = round(FRAMES_PER_S / SCENES_PER_S)
 _ALIGNMENT_BYTES = 8
 _HEADER = struct.Struct("<I")
 _COMPRESSION = 6
-POSE_STEP = 2.0**-13
-"""Poses of links are multiples of this: positions [m] and components of unit quaternions.
-
-Rounded numbers have few significant bits, so that they compress to half. No position is off by more
-than 0.062 mm in a coordinate, nor a rotation by more than 0.014°: a pixel of a robot that fills a
-screen of 4,000 pixels is 0.1 mm.
-"""
-_POSES = ("batched_positions", "batched_wxyzs")
 _Frame = tuple[Recorded, dict[str, Any]]
 """Changes of a frame, and its other fields."""
 Check = Callable[[], None]
@@ -118,27 +110,34 @@ def _follow_points(frame: StageFrame, scene: StageScene) -> dict[str, tuple[floa
 
 def _encode(frames: Iterator[_Frame], **more: Any) -> bytes:
     arrays: list[memoryview] = []
+    tracks = PoseTracks()
     encoded_frames = []
     for recorded, fields in frames:
-        sources = _with_rounded_poses(recorded)
-        messages = [remap_buffers(message, sources, arrays) for message in recorded.messages]
+        messages: list[Message | int] = []
+        for message in recorded.messages:
+            track = tracks.take(message, recorded.arrays)
+            if track is None:
+                for index in pose_arrays(message):
+                    recorded.arrays[index] = rounded_poses(recorded.arrays[index])
+                messages.append(remap_buffers(message, recorded.arrays, arrays))
+            else:
+                messages.append(track)
         encoded_frames.append({**fields, "messages": messages})
-    lengths = [array.nbytes for array in arrays]
-    header = msgspec.json.encode({**more, "lengths": lengths, "frames": encoded_frames})
-    encoded = bytearray(_HEADER.pack(len(header)) + header)
-    for array in arrays:
+    poses, packed_poses = tracks.pack()
+    # Meshes are often the same.
+    blocks: dict[bytes, int] = {}
+    numbers = [blocks.setdefault(bytes(array), len(blocks)) for array in arrays]
+    header = msgspec.json.encode(
+        {
+            **more,
+            **({"poses": poses} if poses["tracks"] else {}),
+            "lengths": [len(block) for block in blocks],
+            "arrays": numbers,
+            "frames": encoded_frames,
+        }
+    )
+    encoded = bytearray(_HEADER.pack(len(header)) + header + packed_poses)
+    for block in blocks:
         encoded += bytes(-len(encoded) % _ALIGNMENT_BYTES)
-        encoded += array
-    return gzip.compress(bytes(encoded), compresslevel=_COMPRESSION, mtime=0)
-
-
-def _with_rounded_poses(recorded: Recorded) -> list[memoryview]:
-    """Return the arrays of messages, those of poses rounded to `POSE_STEP`."""
-    arrays = list(recorded.arrays)
-    for message in recorded.messages:
-        values = message.get("updates") or message.get("props") or {}
-        for index in (array_index(values[name]) for name in _POSES if name in values):
-            poses = np.frombuffer(arrays[index], np.float32)
-            rounded = np.round(poses / POSE_STEP) * POSE_STEP
-            arrays[index] = memoryview(rounded.astype("<f4").tobytes())
-    return arrays
+        encoded += block
+    return gzip.compress(encoded, compresslevel=_COMPRESSION, mtime=0)

@@ -1,5 +1,5 @@
 // Frames of a replay: decodes them, and tells what to send to the 3D view to be at one of them.
-// Their encoder: app/viewer/replay_frames.py.
+// Their encoder: hexapods/drawing/replay_encoding.py.
 
 /** @import { ReplayPlan } from "./types.js" */
 
@@ -19,7 +19,15 @@ const SMOOTHING_S = 0.25;
 /** Of so many frames at once only the last is shown. */
 const MAX_STEPS = 4;
 const HEAD_BYTES = 4;
+/** Of an encoding without messages that are just poses. */
+const NO_POSES = { step: 1, planes: 0, series: [], tracks: [] };
 const ALIGNMENT_BYTES = 8;
+
+/**
+ * Poses that nodes share: values in a frame, and frames. @typedef {[number, number]} Series
+ * Pose of a node in the frames in which it changes: a message without it, its property, the number of its series.
+ * @typedef {{ message: Message, property: string, series: number }} Track
+ */
 
 /**
  * Decode frames. Each array has memory of its own, so that it can be sent by itself.
@@ -28,22 +36,70 @@ const ALIGNMENT_BYTES = 8;
  */
 export function decode(data) {
   const size = new DataView(data).getUint32(0, true);
-  const { lengths, ...frames } = JSON.parse(new TextDecoder().decode(new Uint8Array(data, HEAD_BYTES, size)));
-  let at = HEAD_BYTES + size;
-  const buffers = lengths.map((/** @type {number} */ length) => {
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, HEAD_BYTES, size)));
+  const { poses = NO_POSES, lengths, arrays, ...frames } = head;
+  const packed = new Uint8Array(data, HEAD_BYTES + size, poses.planes * countOf(poses.series));
+  const nextPose = posesOf(packed, poses);
+  let at = HEAD_BYTES + size + packed.length;
+  const blocks = lengths.map((/** @type {number} */ length) => {
     at += (ALIGNMENT_BYTES - (at % ALIGNMENT_BYTES)) % ALIGNMENT_BYTES;
     at += length;
-    return data.slice(at - length, at);
+    return [at - length, at];
   });
+  /** @type {(index: number) => ArrayBuffer} */
+  const arrayAt = (index) => data.slice(...blocks[arrays[index]]);
   /** @type {(value: any) => any} */
   const resolve = (value) => {
     if (Array.isArray(value)) return value.map(resolve);
     if (value === null || typeof value !== "object") return value;
-    if ("__binary_index" in value) return new (ARRAYS[value.dtype] ?? Uint8Array)(buffers[value.__binary_index]);
+    if ("__binary_index" in value) return new (ARRAYS[value.dtype] ?? Uint8Array)(arrayAt(value.__binary_index));
     return Object.fromEntries(Object.entries(value).map(([name, item]) => [name, resolve(item)]));
   };
-  for (const frame of frames.frames) frame.messages = resolve(frame.messages);
+  for (const frame of frames.frames) {
+    frame.messages = frame.messages.map((/** @type {number | Message} */ message) =>
+      typeof message === "number" ? nextPose(message) : resolve(message));
+  }
   return frames;
+}
+
+/** Number of values. @type {(series: Series[]) => number} */
+const countOf = (series) => series.reduce((count, [size, frames]) => count + size * frames, 0);
+
+/**
+ * A function that returns the next message of a track. Poses are packed as byte planes, low bytes first, of zigzag
+ * codes of differences from the frame before, by series, value and frame (hexapods/drawing/pose_tracks.py).
+ * @param {Uint8Array} packed
+ * @param {{ step: number, planes: number, series: Series[], tracks: Track[] }} poses
+ * @returns {(track: number) => Message}
+ */
+function posesOf(packed, { step, planes, series, tracks }) {
+  const codes = new Int32Array(countOf(series));
+  for (let plane = 0; plane < planes; plane += 1) {
+    const start = plane * codes.length;
+    for (let at = 0; at < codes.length; at += 1) codes[at] |= packed[start + at] << (8 * plane);
+  }
+  let at = 0;
+  const steps = series.map(([size, count]) => {
+    const frames = Array.from({ length: count }, () => new Int32Array(size));
+    for (let value = 0; value < size; value += 1) {
+      let sum = 0;
+      for (let frame = 0; frame < count; frame += 1, at += 1) {
+        sum = (sum + ((codes[at] >>> 1) ^ -(codes[at] & 1))) | 0;
+        frames[frame][value] = sum;
+      }
+    }
+    return frames;
+  });
+  const taken = tracks.map(() => 0);
+  return (track) => {
+    const { message, property, series: number } = tracks[track];
+    const pose = steps[number][taken[track]];
+    taken[track] += 1;
+    if (!("updates" in message)) return { ...message, [property]: Array.from(pose, (value) => value * step) };
+    const floats = new Float32Array(pose.length);
+    for (let value = 0; value < pose.length; value += 1) floats[value] = pose[value] * step;
+    return { ...message, updates: { [property]: floats } };
+  };
 }
 
 /** The messages about one entity by their slots. @typedef {Map<string, Message>} Slots */

@@ -17,9 +17,10 @@ from hexapods.drawing.posture import posture
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import grid_root
 from hexapods.drawing.viser_internals.server import InProcessViser
+from tests.drawing.replay_decoding import decoded
 from tests.stage.stage_parts import StageParts
 from tests.viewer.drawing import race_of, scene_nodes
-from tests.viewer.test_replay_frames import LANES, decoded, frames_of, shown
+from tests.viewer.test_replay_frames import LANES, frames_of, shown
 
 FAR = 0.2
 """Side of a foot grid that no leg can reach all of [m]."""

@@ -13,7 +13,7 @@ from app.stage.playback import Replays
 from app.storage.errors import Busy
 from app.viewer.replay_frames import ReplayFrames
 from hexapods.domain.errors import TooLong
-from hexapods.drawing.replay_encoding import POSE_STEP
+from hexapods.drawing.pose_tracks import POSE_STEP
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import SCENE_ROOT
 from hexapods.exports.replay_page import (
@@ -24,8 +24,9 @@ from hexapods.exports.replay_page import (
     replay_page,
 )
 from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
+from tests.drawing.replay_decoding import decoded
 from tests.stage.stage_parts import StageParts
-from tests.viewer.test_replay_frames import LANES, decoded, frames_of, shown
+from tests.viewer.test_replay_frames import LANES, frames_of, shown
 
 _BLOCK = re.compile(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>')
 

@@ -95,22 +95,66 @@ test("after any jumps and steps a browser shows the moment", () => {
   }
 });
 
+/**
+ * An encoding: size of the JSON, JSON, packed poses, blocks of arrays, each aligned to 8 bytes.
+ * @type {(head: object, packed: number[], blocks: Uint8Array[]) => ArrayBuffer}
+ */
+const encoded = (head, packed, blocks) => {
+  const json = new TextEncoder().encode(JSON.stringify({ ...head, lengths: blocks.map(({ length }) => length) }));
+  const bytes = [...new Uint8Array(new Uint32Array([json.length]).buffer), ...json, ...packed];
+  for (const block of blocks) {
+    while (bytes.length % 8) bytes.push(0);
+    bytes.push(...block);
+  }
+  return new Uint8Array(bytes).buffer;
+};
+const frameOf = (/** @type {any[]} */ ...messages) => ({ time_s: 1, follow: {}, scene: null, messages });
+
 test("arrays are read from behind the JSON, each with memory of its own", () => {
-  const head = JSON.stringify({
-    lengths: [3, 8],
-    frames: [{ time_s: 1, follow: {}, scene: null, messages: [
+  const data = encoded({
+    arrays: [0, 1, 1],
+    frames: [frameOf(
       { type: "A", colors: { __binary_index: 0, dtype: "|u1" }, props: { at: { __binary_index: 1, dtype: "<f4" } } },
-    ] }],
-  });
-  const bytes = new Uint8Array(400);
-  new DataView(bytes.buffer).setUint32(0, head.length, true);
-  bytes.set(new TextEncoder().encode(head), 4);
-  const first = Math.ceil((4 + head.length) / 8) * 8;
-  bytes.set([1, 2, 3], first);
-  bytes.set(new Uint8Array(new Float32Array([0.5, -2]).buffer), first + 8);
-  const [{ messages: [message] }] = decode(bytes.buffer).frames;
+      { type: "B", props: { at: { __binary_index: 2, dtype: "<f4" } } },
+    )],
+  }, [], [new Uint8Array([1, 2, 3]), new Uint8Array(new Float32Array([0.5, -2]).buffer)]);
+  const [{ messages: [message, twin] }] = decode(data).frames;
 
   assert.deepEqual(message.colors, new Uint8Array([1, 2, 3]));
   assert.deepEqual(message.props.at, new Float32Array([0.5, -2]));
+  assert.deepEqual(twin.props.at, message.props.at);
   assert.equal(message.props.at.buffer.byteLength, 8);
+  assert.notEqual(twin.props.at.buffer, message.props.at.buffer);
+});
+
+test("poses are the sums of differences, each array with memory of its own", () => {
+  const step = 2 ** -13;
+  const poses = {
+    step,
+    planes: 3,
+    series: [[2, 3], [3, 1]],
+    tracks: [
+      { message: update("/a", {}), property: "batched_positions", series: 0 },
+      { message: update("/b", {}), property: "batched_positions", series: 0 },
+      { message: { type: "SetPositionMessage", name: "/c" }, property: "position", series: 1 },
+    ],
+  };
+  // Zigzag codes of 100000, -1, 0 | -3, 300, 2^22 | -8, 8192, 0.
+  const codes = [200000, 1, 0, 5, 600, 2 ** 23, 15, 16384, 0];
+  const packed = [0, 8, 16].flatMap((shift) => codes.map((code) => (code >> shift) & 255));
+  const other = { type: "RemoveSceneNodeMessage", name: "/d" };
+  const frames = [frameOf(0, 1, 2), frameOf(other, 0, 1), frameOf(1, 0)];
+  const data = encoded({ poses, arrays: [], frames }, packed, []);
+  const [first, second, third] = decode(data).frames.map(({ messages }) => messages);
+  const buffers = first.slice(0, 2).map(({ updates }) => updates.batched_positions.buffer);
+  const move = (/** @type {string} */ name, /** @type {number[]} */ steps) =>
+    update(name, { batched_positions: new Float32Array(steps.map((count) => count * step)) });
+
+  assert.deepEqual(first, [
+    move("/a", [100000, -3]), move("/b", [100000, -3]),
+    { type: "SetPositionMessage", name: "/c", position: [-8 * step, 1, 0] },
+  ]);
+  assert.deepEqual(second, [other, move("/a", [99999, 297]), move("/b", [99999, 297])]);
+  assert.deepEqual(third, [move("/b", [99999, 2 ** 22 + 297]), move("/a", [99999, 2 ** 22 + 297])]);
+  assert.notEqual(buffers[0], buffers[1]);
 });

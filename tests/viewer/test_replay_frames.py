@@ -1,8 +1,5 @@
 """Frames of a replay: what a page that applies them shows, and what is kept of them."""
 
-import gzip
-import json
-import struct
 from typing import Any
 
 import numpy as np
@@ -10,10 +7,11 @@ import pytest
 
 from app.stage.playback import Replays
 from app.viewer.replay_frames import ReplayFrames
-from hexapods.drawing.replay_encoding import POSE_STEP
+from hexapods.drawing.pose_tracks import POSE_STEP
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import SCENE_ROOT
 from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
+from tests.drawing.replay_decoding import decoded
 from tests.stage.stage_parts import StageParts
 
 LANES = ("q-learning", "greedy", "two-step")
@@ -21,19 +19,6 @@ LANES = ("q-learning", "greedy", "two-step")
 
 def frames_of(parts: StageParts) -> ReplayFrames:
     return ReplayFrames(Replays(parts.store, parts.recordings))
-
-
-def decoded(encoded: bytes) -> tuple[dict[str, Any], list[bytes]]:
-    """Return the JSON and the arrays of an encoding, as the page reads them."""
-    data = gzip.decompress(encoded)
-    (size,) = struct.unpack_from("<I", data)
-    head, place, arrays = json.loads(data[4 : 4 + size]), 4 + size, []
-    for length in head["lengths"]:
-        place += -place % 8
-        arrays.append(data[place : place + length])
-        place += length
-    assert place == len(data)
-    return head, arrays
 
 
 def shown(frames: list[dict[str, Any]], arrays: list[bytes]) -> dict[str, Any]:
