@@ -2,12 +2,14 @@
 
 import base64
 import logging
+import math
 import threading
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from app.answer import Answer, Count
 from app.events.bus import Channel
+from app.events.event_records import ViewersEvent
 from app.stage.stage import Picture, Stage
 from app.viewer.replay_frames import ReplayFrames
 from hexapods.domain.errors import HexapodError
@@ -24,6 +26,8 @@ _FRAMES_AT_TAIL = 12
 """Least number of frames of a piece of a run that is still computed, unless they are due."""
 _DUE_S = 0.35
 """Real time before a frame is shown at which it is due [s]."""
+_VIEWERS_TOLD_S = 1.0
+"""Least time between two events about the number of viewers [s]."""
 _SAME_S = 1e-6
 
 _logger = logging.getLogger(__name__)
@@ -37,6 +41,7 @@ class PieceEvent(Answer):
         clock: that times a race.
         version: of the run's frames.
         level, first: level of the frames, and number of the first; null for a single frame.
+        count: number of frames; the last ones may be missing at the end of the run.
         time_s: time of a single frame, which the stage holds; null for others.
         sent_s: time of the server's clock when this was written [s].
         playhead: of the stage.
@@ -48,6 +53,7 @@ class PieceEvent(Answer):
     version: str
     level: int | None
     first: Count | None
+    count: Count
     time_s: float | None
     sent_s: float
     playhead: Playhead
@@ -88,7 +94,7 @@ class PictureFeed:
         stage: the stage.
         frames: encodes the frames.
         channel: receives the events.
-        has_viewers: returns whether any page wants pieces.
+        count_viewers: returns the number of pages that want pieces.
     """
 
     def __init__(
@@ -96,10 +102,12 @@ class PictureFeed:
         stage: Stage,
         frames: ReplayFrames,
         channel: Channel,
-        has_viewers: Callable[[], bool],
+        count_viewers: Callable[[], int],
     ) -> None:
         self._stage, self._frames, self._channel = stage, frames, channel
-        self._has_viewers = has_viewers
+        self._count_viewers = count_viewers
+        self._told_viewers, self._told_viewers_s = 0, -math.inf
+        """Number of viewers of which an event told, and when."""
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="stage", daemon=True)
         self._pushed_of: tuple[str | None, str | None, Clock] = (None, None, "paper")
@@ -136,12 +144,21 @@ class PictureFeed:
 
     def _advance(self) -> None:
         is_replanned = self._stage.advance()
-        if self._has_viewers():
+        viewers = self._count_viewers()
+        self._tell(viewers)
+        if viewers:
             is_told = self._push()
         else:
             is_told, self._pushed_of = False, (None, None, "paper")
         if is_replanned and not is_told:
             self._stage.publish()
+
+    def _tell(self, viewers: int) -> None:
+        """Publish the number of viewers, though not for each of a class that joins."""
+        now_s = self._stage.now()
+        if viewers != self._told_viewers and now_s - self._told_viewers_s >= _VIEWERS_TOLD_S:
+            self._told_viewers, self._told_viewers_s = viewers, now_s
+            self._channel.publish("viewers", ViewersEvent(count=viewers))
 
     def _push(self) -> bool:
         """Push what the playhead comes to; return whether anything was."""
@@ -173,6 +190,7 @@ class PictureFeed:
             version=picture.version or "",
             level=piece.level,
             first=piece.first,
+            count=piece.frames,
             time_s=piece.time_s if piece.level is None else None,
             sent_s=round(self._stage.now(), 4),
             playhead=self._stage.picture().playhead,
@@ -210,9 +228,9 @@ class PictureFeed:
             if is_jump and piece.is_segment and not self._is_encoded(picture, piece):
                 yield self._first_frames(picture, piece, end_s)
             is_jump = False
-            yield piece
             end_s = piece.end_s
             self._pushed_s = begin_s, end_s
+            yield piece
 
     def _first_frames(self, picture: Picture, segment: _Piece, time_s: float) -> _Piece:
         """Return the first frames that are shown of a segment."""

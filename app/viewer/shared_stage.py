@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Self
 
 from app.events.bus import Channel, EventBus
-from app.events.event_records import ViewersEvent
 from app.stage.roles import Roles
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
@@ -64,7 +63,7 @@ class SharedStage:
         self.channel = Channel(bus)
         self.stage = Stage(store, recordings, self.channel, announces=announces, members=members)
         self.viewers = 0
-        self._feed = PictureFeed(self.stage, frames, self.channel, lambda: self.viewers > 0)
+        self._feed = PictureFeed(self.stage, frames, self.channel, lambda: self.viewers)
         self._resources = ExitStack()
 
     @property
@@ -87,7 +86,6 @@ class SharedStage:
     def count_viewer(self, change: int) -> None:
         """Count a page that begins to watch (1), or has left (-1). On the event loop."""
         self.viewers += change
-        self.channel.publish("viewers", ViewersEvent(count=self.viewers))
-        if change > 0:
-            # It need not wait for the next advance.
+        if self.viewers == 1:
+            # The first need not wait for the next advance.
             self.stage.changed.set()
