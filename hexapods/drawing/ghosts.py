@@ -79,25 +79,14 @@ class Ghosts(Temporary):
     def __init__(
         self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
     ) -> None:
-        super().__init__(server, f"{root}/lines", x_m)
-        self._width, self._x_m = 2 * spec.robot.span_m, x_m
+        super().__init__(server, root, x_m)
+        self._spec, self._mesh = spec, mesh
+        self._width = 2 * spec.robot.span_m
         self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
-        # The robot is there from the start, hidden: frames that show it need not bring its meshes.
-        self._robot_root = f"{root}/robot"
-        server.scene.add_frame(self._robot_root, show_axes=False, position=(x_m, 0.0, 0.0))
-        self._robot = Robots(server, self._robot_root, spec, mesh, [0.0], is_ghost=True)
-        self._robot.draw([None])
-        self._label: viser.LabelHandle | None = None
 
     def draw(self, ghosts: tuple[Ghost, ...]) -> None:
         """Show these ghosts, ordered from the oldest to the newest."""
-        if ghosts == self._shown:
-            return
-        if self._label is not None:
-            self._label.remove()
-            self._label = None
         if not self._begin(ghosts):
-            self._robot.draw([None])
             return
         for number, ghost in enumerate(ghosts):
             self._draw_line(number, ghost, (number + 1) / len(ghosts))
@@ -120,9 +109,11 @@ class Ghosts(Temporary):
         pose = self._rest.copy()
         pose[1] += ghost.distance_m
         pose[2] += ghost.conditions.ground_m(0)
-        self._robot.draw([LaneFrame(pose, 0, 0, 0.0, conditions=ghost.conditions)])
-        self._label = self._server.scene.add_label(
-            f"{self._robot_root}/label",
+        root = f"{self._root}/robot"
+        robot = Robots(self._server, root, self._spec, self._mesh, [0.0], is_ghost=True)
+        robot.draw([LaneFrame(pose, 0, 0, 0.0, conditions=ghost.conditions)])
+        self._server.scene.add_label(
+            f"{self._root}/robot/label",
             f"{metres(ghost.distance_m)}\nafter {whole(ghost.step)} steps",
             position=(0.0, ghost.distance_m, 0.22),
             anchor="bottom-center",
