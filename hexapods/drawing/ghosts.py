@@ -6,7 +6,6 @@ import viser
 
 from hexapods.domain.text import metres, whole
 from hexapods.drawing.colormap import rgb
-from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.robots import Robots
 from hexapods.drawing.shapes import strip
 from hexapods.drawing.temporary import Temporary
@@ -68,24 +67,30 @@ class PhotoFinish(Temporary):
 class Ghosts(Temporary):
     """Evaluations on a lane of their own: a line for each, a translucent robot for the newest.
 
+    The robot is there from the start, hidden, so that its meshes are sent once and not in every
+    frame that has an evaluation.
+
     Args:
         server: where to draw.
-        root: scene node of the ghosts.
+        root: scene node of the lines and the label.
         spec: the scene.
-        mesh: the robot.
+        robot: the robot, on one lane.
         x_m: centre of the lane [m].
     """
 
     def __init__(
-        self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, robot: Robots, x_m: float
     ) -> None:
         super().__init__(server, root, x_m)
-        self._spec, self._mesh = spec, mesh
+        self._robot = robot
         self._width = 2 * spec.robot.span_m
         self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
+        self._robot.draw([None])
 
     def draw(self, ghosts: tuple[Ghost, ...]) -> None:
         """Show these ghosts, ordered from the oldest to the newest."""
+        if not ghosts:
+            self._robot.draw([None])
         if not self._begin(ghosts):
             return
         for number, ghost in enumerate(ghosts):
@@ -109,11 +114,9 @@ class Ghosts(Temporary):
         pose = self._rest.copy()
         pose[1] += ghost.distance_m
         pose[2] += ghost.conditions.ground_m(0)
-        root = f"{self._root}/robot"
-        robot = Robots(self._server, root, self._spec, self._mesh, [0.0], is_ghost=True)
-        robot.draw([LaneFrame(pose, 0, 0, 0.0, conditions=ghost.conditions)])
+        self._robot.draw([LaneFrame(pose, 0, 0, 0.0, conditions=ghost.conditions)])
         self._server.scene.add_label(
-            f"{self._root}/robot/label",
+            f"{self._root}/label",
             f"{metres(ghost.distance_m)}\nafter {whole(ghost.step)} steps",
             position=(0.0, ghost.distance_m, 0.22),
             anchor="bottom-center",

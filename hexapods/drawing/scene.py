@@ -155,10 +155,11 @@ class _RunScene:
         ]
         self._grids: dict[int, FootGridDrawing] = {}
         self._photo = PhotoFinish(server, f"{SCENE_ROOT}/photo", spec, self.xs)
-        ghosts = spec.kind == "training"
-        self._ghosts = (
-            Ghosts(server, f"{SCENE_ROOT}/ghosts", spec, mesh, xs[-1]) if ghosts else None
-        )
+        self._ghosts: Ghosts | None = None
+        if spec.kind == "training":
+            evaluated = f"{robots}-evaluated"
+            robot = Robots(server, evaluated, spec, mesh, xs[-1:], is_ghost=True)
+            self._ghosts = Ghosts(server, f"{SCENE_ROOT}/ghosts", spec, robot, xs[-1])
         self._server = server
 
     def draw(self, frame: StageFrame) -> bool:
@@ -210,7 +211,8 @@ class _RunScene:
     def _draw_ghost_robots(self, ghosts: Sequence[LaneFrame | None]) -> bool:
         """Draw the robots of the other run, over those on the lanes of the same number."""
         if self._ghost_robots is None:
-            if not any(ghosts):
+            # Also before a branch parts from its original, so that meshes are sent with the scene.
+            if not ghosts:
                 return False
             spec, root = self._ghost_spec, f"{SCENE_ROOT}/ghost-robots"
             mesh = self._mesh if spec.robot == self.spec.robot else RobotMesh(spec.robot)

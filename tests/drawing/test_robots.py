@@ -137,23 +137,20 @@ def test_ghost_of_an_evaluation_has_the_legs_of_its_time(server: InProcessViser)
 
     def links_of_ghosts() -> int:
         nodes = scene_nodes(server).items()
-        parts = [node for name, node in nodes if "/ghosts/robot/" in name]
+        parts = [node for name, node in nodes if "/robots-evaluated/" in name]
         # A link that is lost is drawn with the size 0.
-        scales = [node.get("batched_scales") for node in parts]
-        places = [node.get("batched_positions", ()) for node in parts]
-        scales_and_places = zip(scales, places, strict=True)
-        counts = [
-            len(link_places) if some is None else int((some > 0).sum())
-            for some, link_places in scales_and_places
-        ]
-        return sum(counts)
+        return sum(int((node["batched_scales"] > 0).sum()) for node in parts)
 
     frame = frame_of(spec, lane_in(spec))
+    scene.draw(frame)
+    assert links_of_ghosts() == 0, "nothing was evaluated"
     scene.draw(replace(frame, ghosts=(ghost,)))
     whole = links_of_ghosts()
     scene.draw(replace(frame, ghosts=(replace(ghost, conditions=World((Lost(legs=(2,)),))),)))
 
-    assert links_of_ghosts() < whole
+    assert 0 < links_of_ghosts() < whole
+    scene.draw(frame)
+    assert links_of_ghosts() == 0, "before the first evaluation"
 
 
 def test_label_names_the_step_of_a_fall_counted_from_one() -> None:

@@ -166,3 +166,20 @@ def test_ghosts_are_drawn_over_their_lanes_and_beside_with_the_name_of_their_own
     )
     first = frames.segment(run.id, "paper", 0, 1, other.id).data
     assert frames.segment(run.id, "paper", 0, 1, other.id).data is first
+
+
+def test_frames_with_an_evaluation_send_no_meshes_of_its_ghost(parts: StageParts) -> None:
+    run, frames = parts.finished_training(20, evaluate_every=10), frames_of(parts)
+    start, _ = decoded(frames.scene(run.id))
+    meshes = {m["name"] for m in start["frames"][0]["messages"] if m["type"].startswith("Batched")}
+    moment, arrays = decoded(frames.moment(run.id, "paper", 5.9))
+
+    assert any("ghosts/line" in m.get("name", "") for m in moment["frames"][0]["messages"])
+    assert not any(m["type"].startswith("Batched") for m in moment["frames"][0]["messages"])
+    (scales, *_) = (
+        np.frombuffer(value, np.float32)
+        for name, value in shown(moment["frames"], arrays).items()
+        if "-evaluated/" in name and name.endswith("batched_scales")
+    )
+    assert scales.all()
+    assert any("-evaluated/" in name for name in meshes)
