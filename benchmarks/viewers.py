@@ -17,6 +17,7 @@ import argparse
 import asyncio
 import bisect
 import http.client
+import itertools
 import json
 import resource
 import socket
@@ -189,13 +190,15 @@ async def measure(host: str, port: int, options: argparse.Namespace) -> dict[str
     """Watch for `options.seconds`."""
     server = psutil.Process(options.pid or _listener_of(port))
     loop, pieces = asyncio.get_running_loop(), Pieces()
-    gate = asyncio.Semaphore(_OPENING_AT_ONCE)
+    gate, addresses = asyncio.Semaphore(_OPENING_AT_ONCE), itertools.cycle(range(2, 52))
 
     async def open_viewer(buffer_bytes: int | None, path: str) -> Viewer:
         async with gate:
             sock = socket.socket()
             if buffer_bytes is not None:
                 sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
+            # Clients at other addresses, as an address has a limit of connections.
+            sock.bind((f"127.0.0.{next(addresses)}", 0))
             sock.setblocking(False)
             await loop.sock_connect(sock, (host, port))
             _, viewer = await loop.create_connection(lambda: Viewer(path, host, pieces), sock=sock)
