@@ -15,8 +15,9 @@ Modules beside the packages, each of which has a map in its docstring:
   `race_tables`; `repetition`; `benchmarks`; `viewing`; `policies`, `result_table`. `arguments`:
   what a person may write for an agent, a robot or a world. `interruption`: Ctrl-C.
 - `assembly`: from a config to a simulator and agents.
-- `assets`: where models, page and documents are; `files`: atomic writes and locks; `machine`: cores
-  and memory; `extras`: optional packages; `version`: of the product.
+- `assets`: where models, page and documents are; `offline_page`: parts of the page in one file;
+  `files`: atomic writes and locks; `machine`: cores and memory; `extras`: optional packages;
+  `version`: of the product.
 - `processes`: start, set-up, watch and end of processes; `clean_start`: they do not import the
   program that starts them; `fork_server_end`: no folder is left; `worker_pool`: their executor.
 """

@@ -1,20 +1,16 @@
 """A replay as one page that needs no server: viser's client, a player and the frames of the run.
 
 The page is `viser_internals.client`'s with `static/js/offline/player.js` and the modules that this
-imports, all inline, and blocks of data: `replay`, JSON about the run; `scene` and `segment-…`, the
-encodings of `drawing.replay_encoding` in base64. By its Content-Security-Policy it can load
-nothing.
+imports (`offline_page`), and blocks of data: `replay`, JSON about the run; `scene` and `segment-…`,
+the encodings of `drawing.replay_encoding`.
 """
 
-import base64
-import json
-import re
 from collections.abc import Callable, Iterator
 
-from hexapods import assets
 from hexapods.domain.errors import TooLong
 from hexapods.domain.records import to_json, to_json_bytes
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
+from hexapods.offline_page import data_block, digest, import_map, styles
 from hexapods.runs.recording import FIRST_STEPS, NEWEST_STEPS
 from hexapods.shows.replay import HIGHEST_LEVEL, ReplayView
 
@@ -28,9 +24,7 @@ _SAMPLED = 8
 """Number of segments from whose size it is decided that a level is far too large."""
 _PLAYER = "js/offline/player.js"
 _STYLE = "style/offline.css"
-_IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
-_EXPORT = re.compile(r"^export (?=(async )?(function|class|const)\b)", re.MULTILINE)
-_HEAD_END, _BODY_END = "</head>", "</body>"
+_BODY_END = "</body>"
 
 
 def replay_page(
@@ -52,27 +46,20 @@ def replay_page(
     Raises:
         TooLong: at the call.
     """
-    start = base64.b64encode(scene())
-    before, after = _around_frames(title)
-    room = max_bytes - len(before) - len(after) - len(start) - len(to_json_bytes(plan)) - 2000
+    plan_json, start = to_json_bytes(plan), data_block("scene", scene())
+    before, after = _around_frames(title, plan_json.decode() + start)
+    room = max_bytes - len(before) - len(after) - len(start) - len(plan_json) - 2000
     level, numbers = _segments_that_fit(segment, plan, room)
     replay = {**to_json(plan), "title": title, "level": level, "notes": _notes(plan, level)}
 
     def chunks() -> Iterator[bytes]:
         yield before
-        # "<" could end the block.
-        yield _block("replay", json.dumps(replay).replace("<", "\\u003c").encode())
-        yield _block("scene", start)
+        yield f"{data_block('replay', replay)}\n{start}\n".encode()
         for number in numbers:
-            yield _block(f"segment-{number}", base64.b64encode(segment(level, number)))
+            yield f"{data_block(f'segment-{number}', segment(level, number))}\n".encode()
         yield after
 
     return chunks()
-
-
-def _block(name: str, data: bytes) -> bytes:
-    """Return an element that holds data; its type is none that browsers run."""
-    return b'<script type="text/plain" id="%s">%s</script>\n' % (name.encode(), data)
 
 
 def _segments_that_fit(segment: Segment, plan: ReplayView, room: int) -> tuple[int, list[int]]:
@@ -80,7 +67,7 @@ def _segments_that_fit(segment: Segment, plan: ReplayView, room: int) -> tuple[i
 
     def size_of(level: int, number: int) -> int:
         encoded = 4 * -(-len(segment(level, number)) // 3)
-        return len(_block(f"segment-{number}", b"")) + encoded
+        return len(data_block(f"segment-{number}", b"")) + len("\n") + encoded
 
     for level in range(HIGHEST_LEVEL + 1):
         numbers, size = _recorded_segments(plan, level), 0
@@ -128,30 +115,22 @@ def _notes(plan: ReplayView, level: int) -> list[str]:
     return notes
 
 
-def _around_frames(title: str) -> tuple[bytes, bytes]:
-    """Return the page before and after the blocks of data."""
-    style = (assets.static_dir() / _STYLE).read_text("utf-8")
-    head = f'<style>{style}</style><script type="module">{_inlined(_PLAYER)}</script>'
+def _around_frames(title: str, content: str) -> tuple[bytes, bytes]:
+    """Return the page before and after the blocks of data.
+
+    Args:
+        title: title of the page.
+        content: what else differs between pages; the nonce depends on it.
+    """
+    modules = import_map(_PLAYER)
+    nonce = digest(modules + title + content)
+    head = (
+        f'<style>{styles(_STYLE)}</style><script type="importmap">{modules}</script>'
+        f'<script type="module" nonce="{nonce}">import "{_PLAYER}";</script>'
+    )
     page = patched_page(title, OFFLINE_SCRIPTS, head)
-    policy = content_policy(page, is_file=True)
+    policy = content_policy(page, file_nonce=nonce)
     meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
     page = page.replace("<head>", f'<head><meta charset="utf-8">{meta}', 1)
     before, after = page.rsplit(_BODY_END, 1)
     return before.encode(), (_BODY_END + after).encode()
-
-
-def _inlined(entry: str) -> str:
-    """Return a module with all that it imports in one, each before what imports it."""
-    texts: dict[str, str] = {}
-
-    def add(path: str) -> None:
-        source = (assets.static_dir() / path).read_text("utf-8")
-        for statement in _IMPORT.finditer(source):
-            target = (assets.static_dir() / path).parent / statement["path"]
-            imported = target.resolve().relative_to(assets.static_dir().resolve()).as_posix()
-            if imported not in texts:
-                add(imported)
-        texts[path] = _EXPORT.sub("", _IMPORT.sub("", source))
-
-    add(entry)
-    return "\n".join(texts.values())

@@ -23,11 +23,13 @@ from hexapods.exports.replay_page import (
     _recorded_segments,
     replay_page,
 )
+from hexapods.offline_page import import_map
 from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
 from tests.drawing.replay_decoding import decoded
 from tests.stage.stage_parts import StageParts
 from tests.viewer.test_replay_frames import LANES, frames_of, shown
 
+PLAYER = "js/offline/player.js"
 _BLOCK = re.compile(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>')
 
 
@@ -67,15 +69,20 @@ def test_frames_of_the_page_are_the_joint_positions_that_were_simulated(parts: S
     assert segment["frames"][-1]["time_s"] == pytest.approx(end_s)
 
 
-def test_the_page_has_its_modules_inline_and_its_title_as_text(parts: StageParts) -> None:
-    page = page_of(frames_of(parts), parts.finished_race(LANES).id)
+def test_the_page_has_its_modules_and_its_title_as_text(parts: StageParts) -> None:
+    frames, run = frames_of(parts), parts.finished_race(LANES)
+    page = page_of(frames, run.id)
 
     assert "<title>A &lt;race&gt; &amp; more</title>" in page
     assert "A <race>" not in page
-    (player,) = re.findall(r'<script type="module">(.*?)</script>', page, re.DOTALL)
-    assert not re.search(r"^(import|export) ", player, re.MULTILINE)
-    assert player.index("class SceneState") < player.index("class Player")
-    assert "frame-ancestors" not in page.split("</head>")[0].split("<script")[0]
+    assert f'<script type="importmap">{import_map(PLAYER)}</script>' in page
+    ((nonce, code),) = re.findall(r'<script type="module" nonce="([^"]+)">(.*?)</script>', page)
+    assert code == f'import "{PLAYER}";'
+    policy = page.split("</head>")[0].split("<script")[0]
+    assert f"'nonce-{nonce}'" in policy
+    assert "frame-ancestors" not in policy
+    assert page == page_of(frames, run.id)
+    assert nonce not in page_of(frames, parts.finished_race(LANES, steps=3).id)
 
 
 @pytest.mark.promises

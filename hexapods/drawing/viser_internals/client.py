@@ -44,7 +44,7 @@ def batch_colors(colors: NDArray[np.uint8], brightness: float = 1.0) -> NDArray[
     return (255 * brightness * (colors / 255.0) ** 2.2).round().astype(np.uint8)
 
 
-def content_policy(page: str, *, is_file: bool = False) -> str:
+def content_policy(page: str, *, file_nonce: str | None = None) -> str:
     """Return the page's Content-Security-Policy.
 
     Besides scripts it allows what viser's client needs: it compiles WebAssembly, runs its
@@ -52,16 +52,19 @@ def content_policy(page: str, *, is_file: bool = False) -> str:
 
     Args:
         page: the page's HTML, patch included.
-        is_file: whether the page is a file without a server: then it may load nothing at all, and
-            be embedded anywhere.
+        file_nonce: nonce of the element that imports the modules of a page that is a file without
+            a server. Such a page may load nothing else, and be embedded anywhere.
 
     Raises:
         RuntimeError: This version of viser packs its client in another way.
     """
-    self_source, ancestors = ("", "") if is_file else ("'self' ", "; frame-ancestors 'self'")
-    hashes = " ".join(_hash(script) for script in page_scripts(page))
+    self_source, ancestors = "'self' ", "; frame-ancestors 'self'"
+    scripts = [_hash(script) for script in page_scripts(page)]
+    if file_nonce is not None:
+        self_source, ancestors = "", ""
+        scripts.append(f"'nonce-{file_nonce}'")
     return (
-        f"default-src 'none'; script-src 'strict-dynamic' 'wasm-unsafe-eval' {hashes}; "
+        f"default-src 'none'; script-src 'strict-dynamic' 'wasm-unsafe-eval' {' '.join(scripts)}; "
         f"worker-src blob:; style-src 'unsafe-inline'; img-src {self_source}blob: data:; "
         f"connect-src {self_source}blob: data:; base-uri 'none'; form-action 'none'{ancestors}"
     )

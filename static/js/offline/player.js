@@ -1,4 +1,4 @@
-// Plays a replay out of the file that it is in, without a server. hexapods/drawing/replay_page.py puts it there, with
+// Plays a replay out of the file that it is in, without a server. hexapods/exports/replay_page.py puts it there, with
 // the modules that it imports, the frames of the run and viser's client. The interface is described in docs/exports.md.
 import { decode, Follower, inRecording, SceneState } from "../replay-frames.js";
 

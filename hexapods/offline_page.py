@@ -1,11 +1,18 @@
-"""The page's scripts and styles, to be put into one file."""
+"""Parts of an HTML file that opens without a server: modules and styles of the page, and data.
+
+Modules are `data:` addresses in an import map. The Content-Security-Policy of such a file lets it
+load nothing else, and run only those modules that an element with the file's nonce imports.
+"""
 
 import base64
+import hashlib
 import json
 import posixpath
 import re
-from functools import lru_cache
+from collections.abc import Mapping
+from functools import cache
 from html.parser import HTMLParser
+from typing import Any
 
 from hexapods import assets
 
@@ -17,7 +24,7 @@ _IMPORT = re.compile(
 """The module that a statement imports or exports from, or that code imports when it needs it."""
 
 
-@lru_cache(maxsize=1)
+@cache
 def import_map(entry: str) -> str:
     """Return an import map that has a module and all that it imports as `data:` addresses.
 
@@ -52,6 +59,33 @@ def import_map(entry: str) -> str:
 def styles(*names: str) -> str:
     """Return style sheets below `static`, one after the other."""
     return "\n".join((assets.static_dir() / name).read_text("utf-8") for name in names)
+
+
+def data_block(name: str, data: Mapping[str, Any] | bytes) -> str:
+    """Return an element that holds data as JSON, or bytes in base64; browsers do not run its type.
+
+    Args:
+        name: id of the element.
+        data: plain types without NaN and infinities, or bytes.
+
+    Raises:
+        ValueError: if there is a NaN or an infinity.
+    """
+    if isinstance(data, bytes):
+        text = base64.b64encode(data).decode()
+    else:
+        # "<" could end the element.
+        text = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
+    return f'<script type="text/plain" id="{name}">{text}</script>'
+
+
+def digest(text: str) -> str:
+    """Return the SHA-256 of a text in base64, for a Content-Security-Policy.
+
+    That of all that a file has is its nonce: the same content gives the same file, and no data in
+    it can name the nonce.
+    """
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
 def _path_of(name: str, importer: str, packages: dict[str, str]) -> str:
