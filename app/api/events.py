@@ -176,12 +176,11 @@ async def stream_events(
     try:
         id_before_read = services.bus.last_id
         # In a thread: the database and the stage's lock would block the event loop.
-        snapshot, listed_ids = await run_in_threadpool(
-            _snapshot, services, shared, listener, run_id
+        text, listed_ids = await run_in_threadpool(
+            _encoded_snapshot, services, shared, listener, run_id
         )
         # All events after this id follow: a client that reconnects with it misses none.
         since = str(subscription.since)
-        text = to_json_bytes(snapshot).decode()
         yield format_sse_event(event="snapshot", data_str=text, id=since, retry=RETRY_MS)
         async for events in subscription.batches(_IDLE_S):
             wires = [
@@ -210,6 +209,14 @@ def _is_outdated(event: Event, id_before_read: int, listed_ids: set[str]) -> boo
 
 def _is_hidden(services: Services, listener: EventListener, run_id: str | None) -> bool:
     return listener.role != "operator" and services.features.is_hidden(run_id, listener.identity)
+
+
+def _encoded_snapshot(
+    services: Services, shared: SharedStage, listener: EventListener, run_id: str | None
+) -> tuple[str, set[str]]:
+    """Return the snapshot as JSON, and the ids of the runs in it."""
+    snapshot, listed_ids = _snapshot(services, shared, listener, run_id)
+    return to_json_bytes(snapshot).decode(), listed_ids
 
 
 def _snapshot(

@@ -226,7 +226,9 @@ class PictureFeed:
             if piece is None:
                 return
             if is_jump and piece.is_segment and not self._is_encoded(picture, piece):
-                yield self._first_frames(picture, piece, end_s)
+                first_frames = self._first_frames(picture, piece, end_s)
+                self._pushed_s = begin_s, max(end_s, first_frames.end_s)
+                yield first_frames
             is_jump = False
             end_s = piece.end_s
             self._pushed_s = begin_s, end_s

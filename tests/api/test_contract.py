@@ -1,6 +1,5 @@
 """OpenAPI document: it describes every route and response, and real responses match it."""
 
-import asyncio
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import fields
@@ -10,14 +9,12 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
-from fastapi.sse import ServerSentEvent
 from pydantic import TypeAdapter
 
 from app.api.answers import TrainingPage
 from app.api.contract import operations, problems_of
-from app.api.deps import EventListener, Services
+from app.api.deps import Services
 from app.api.event_answers import event_bodies
-from app.api.events import get_events
 from app.api.options import options_view
 from app.api.policy import OPERATOR, PUBLIC, WATCH_RUN, MissingPolicy, RoutePolicy, policies, policy
 from app.api.problems import STATUSES
@@ -249,7 +246,8 @@ def test_real_responses_match_their_models(api: Api, trained: dict[str, Any]) ->
 def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> None:
     assert isinstance(api.client.app, FastAPI)
     services: Services = api.client.app.state.services
-    subscription = services.bus.subscribe()
+    subscription = services.bus.subscribe(has_picture=True)
+    services.stages[0].count_viewer(1)
     run = api.slow_training()
     api.call("PATCH", f"/trainings/{run['id']}", json={"pace": 30, "settings": {"alpha": 0.5}})
     limp = {"kind": "limp", "legs": [1]}
@@ -265,22 +263,17 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     opened = api.call("POST", "/tournaments", json={"rules": {**WALK, "draws": 5}}).json()
     api.call("DELETE", f"/tournaments/{opened['id']}")
 
-    async def first_event() -> ServerSentEvent:
-        listener = EventListener("operator")
-        return await anext(get_events(services, services.stages[0], None, listener))
-
-    snapshot = asyncio.run(first_event())
+    snapshot = api.call("GET", "/events/snapshot").text
     bodies = event_bodies(load().classes)
     members: list[Any] = [*fields(bodies)]
     models = {bodies.json_names.get(member.name, member.name): member.type for member in members}
     events = subscription.drain()
     subscription.close()
     received = {event.event for event in events}
-    assert snapshot.raw_data is not None
-    # A viewer connects to the stage only in a browser, and a room has a stage of its own.
-    assert received | {"snapshot", "viewers", "room"} == set(models)
+    # Each stream has a clock of its own, and a room a stage.
+    assert received | {"snapshot", "clock", "room"} == set(models)
     for name, data in [
-        ("snapshot", snapshot.raw_data),
+        ("snapshot", snapshot),
         *((event.event, event.data) for event in events),
     ]:
         TypeAdapter(models[name]).validate_json(data)

@@ -11,6 +11,7 @@ import pytest
 
 from app.api import events
 from app.api.deps import EventListener, Services
+from app.events.bus import MAX_PENDING_PIECES
 from app.events.event_records import DeletedRun, EvaluationEvent
 from app.server import create_app
 from app.settings import Settings
@@ -33,24 +34,39 @@ class ReceivedEvent(NamedTuple):
     data: Any
 
 
+def _received(text: str) -> ReceivedEvent:
+    fields = dict(line.split(": ", 1) for line in text.split("\n"))
+    return ReceivedEvent(fields["event"], int(fields.get("id", "0")), json.loads(fields["data"]))
+
+
 class Stream:
     """The event stream of one client, on the event loop of the test."""
 
-    def __init__(self, services: Services, last_event_id: int | None = None) -> None:
+    def __init__(
+        self, services: Services, last_event_id: int | None = None, *, has_picture: bool = False
+    ) -> None:
         header = None if last_event_id is None else str(last_event_id)
-        self.events: Any = events.get_events(
-            services, services.stages[0], None, EventListener("operator"), header
+        self.chunks: Any = events.stream_events(
+            services,
+            services.stages[0],
+            None,
+            EventListener("operator"),
+            header,
+            has_picture=has_picture,
         )
+        self._received: list[ReceivedEvent] = []
 
     async def next(self) -> ReceivedEvent:
-        event = await asyncio.wait_for(anext(self.events), LONG_S)
-        return ReceivedEvent(event.event, int(event.id), json.loads(event.raw_data))
+        while not self._received:
+            chunk = await asyncio.wait_for(anext(self.chunks), LONG_S)
+            self._received += map(_received, chunk.decode().removesuffix("\n\n").split("\n\n"))
+        return self._received.pop(0)
 
     async def __aenter__(self) -> "Stream":
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        await self.events.aclose()
+        await self.chunks.aclose()
 
     async def next_of(self, name: str) -> ReceivedEvent:
         while (event := await self.next()).event != name:
@@ -176,5 +192,52 @@ def test_replayed_deletion_does_not_remove_a_run_that_was_imported_again(
             services.store.delete("a")
             services.bus.publish("run-deleted", DeletedRun(id="a"), "a")
             assert (await stream.next_of("run-deleted")).data["id"] == "a"
+
+    asyncio.run(test())
+
+
+def test_pieces_of_the_picture_come_to_those_who_watch_alone(services: Services) -> None:
+    stage = services.stages[0]
+
+    async def test() -> None:
+        async with Stream(services) as listening, Stream(services, has_picture=True) as watching:
+            assert (await listening.next()).event == (await watching.next()).event == "snapshot"
+            assert stage.viewers == 1
+            stage.channel.publish("piece", evaluation(1))
+            services.bus.publish("evaluation", evaluation(2), "a")
+            assert (await listening.next()).event == "evaluation"
+            assert [(await watching.next()).event for _ in range(2)] == ["piece", "evaluation"]
+        assert stage.viewers == 0
+
+    asyncio.run(test())
+
+
+def test_a_client_that_does_not_read_has_few_pieces_waiting(services: Services) -> None:
+    stage = services.stages[0]
+
+    async def test() -> None:
+        async with Stream(services, has_picture=True) as stream:
+            await stream.next()
+            for step in range(1, 50):
+                stage.channel.publish("piece", evaluation(step))
+                services.bus.publish("evaluation", evaluation(step), "a")
+            received = [await stream.next() for _ in range(49 + MAX_PENDING_PIECES)]
+            pieces = [event.data["step"] for event in received if event.event == "piece"]
+            assert pieces == list(range(50 - MAX_PENDING_PIECES, 50))
+
+    asyncio.run(test())
+
+
+def test_a_quiet_stream_tells_the_time_of_the_servers_clock(
+    services: Services, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(events, "_IDLE_S", 0.01)
+
+    async def test() -> None:
+        async with Stream(services) as stream:
+            snapshot = await stream.next()
+            clock = await stream.next()
+            assert clock.event == "clock"
+            assert clock.data["sent_s"] >= snapshot.data["stage"]["sent_s"]
 
     asyncio.run(test())
