@@ -26,7 +26,7 @@ from hexapods.drawing.posture import draw_posture
 from hexapods.drawing.scene import StageScene, grid_root
 from hexapods.drawing.track import WORLD
 from hexapods.drawing.viser_internals.recorder import Recorded, recorder
-from hexapods.drawing.viser_internals.server import in_process_viser
+from hexapods.drawing.viser_internals.server import recorded_viser
 from hexapods.drawing.viser_internals.stream import LIFECYCLES, Message, remap_buffers
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S, Replay
 from hexapods.shows.scene_view import scene_view
@@ -74,7 +74,7 @@ def encode_posture(frame: StageFrame, lane: int, cells: Cells) -> bytes:
     """
     spec = replace(frame.spec, lane_specs=frame.spec.lane_specs[lane : lane + 1], ghosts=None)
     root = f"{grid_root(lane)}/posture"
-    with in_process_viser() as server, recorder(server) as recording:
+    with recorded_viser() as server, recorder(server) as recording:
         draw_posture(server, root, spec, cells, frame.lanes[lane].conditions)
         messages, arrays = recording.take()
         messages_of_ghost = [
@@ -85,7 +85,7 @@ def encode_posture(frame: StageFrame, lane: int, cells: Cells) -> bytes:
 
 def _frames(replay: Replay, times_s: Sequence[float], check: Check) -> Iterator[_Frame]:
     """Yield the scene at the start, then what each frame changes; each with its other fields."""
-    with in_process_viser() as server, recorder(server) as recording:
+    with recorded_viser() as server, recorder(server) as recording:
         stage_scene = StageScene(server)
         for number, time_s in enumerate([0.0, *times_s], start=-1):
             check()

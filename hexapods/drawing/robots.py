@@ -1,17 +1,19 @@
 """The robots on stage, their name labels, and the flags of those that crossed the finish line."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import viser
 from numpy.typing import NDArray
 
 from hexapods.domain.text import metres, whole
+from hexapods.domain.types import IntArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.drawing.colormap import Rgb, mix, rgb
 from hexapods.drawing.robot_mesh import Part, RobotMesh
 from hexapods.drawing.shapes import flag
+from hexapods.drawing.viser_internals.batches import move_instances
 from hexapods.drawing.viser_internals.client import batch_colors
 from hexapods.runs.clocks import FINISH_LINE_M
 from hexapods.shows.stage_frame import LaneFrame, LaneSpec, SceneSpec
@@ -54,9 +56,10 @@ class Robots:
         self._poses: list[NDArray[np.floating[Any]]] = [mesh.default_qpos for _ in xs]
         self._body_poses = [mesh.body_poses(mesh.default_qpos).moved(x) for x in xs]
         self._batches: list[viser.BatchedMeshHandle] = []
+        self._drawn = [self._instances(part.links) for part in mesh.parts]
         for number, part in enumerate(mesh.parts):
             colors, _ = self._looks(part)
-            positions, wxyzs = self._instances(number)
+            positions, wxyzs = self._drawn[number]
             handle = server.scene.add_batched_meshes_simple(
                 f"{root}/{number if is_ghost else mesh.part_name(number)}",
                 part.shape.vertices,
@@ -82,8 +85,7 @@ class Robots:
                 self._poses[lane], moved = view.qpos, True
                 self._body_poses[lane] = self._mesh.body_poses(view.qpos).moved(x)
         if moved:
-            for number, batch in enumerate(self._batches):
-                batch.batched_positions, batch.batched_wxyzs = self._instances(number)
+            self._move_batches()
         conditions = [None if view is None else view.conditions for view in views]
         if conditions != self._conditions:
             self._conditions = conditions
@@ -108,12 +110,31 @@ class Robots:
         scales = np.array([color is not None for color in colors], np.float32)
         return np.array([color or (0, 0, 0) for color in colors], np.uint8), scales
 
-    def _instances(self, part: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return positions (lanes · links, 3) [m] and quaternions wxyz (lanes · links, 4)."""
-        links = self._mesh.parts[part].links
+    def _move_batches(self) -> None:
+        instances: dict[bytes, _Instances] = {}
+        """By links, which several parts share: painted ones and others."""
+        for number, (part, batch) in enumerate(zip(self._mesh.parts, self._batches, strict=True)):
+            key = part.links.tobytes()
+            if key not in instances:
+                instances[key] = self._instances(part.links)
+            before, self._drawn[number] = self._drawn[number], instances[key]
+            for name, old, new in zip(_Instances._fields, before, instances[key], strict=True):
+                if not np.array_equal(old, new):
+                    move_instances(batch, name, new)
+
+    def _instances(self, links: IntArray) -> "_Instances":
         positions = np.concatenate([body_poses.positions[links] for body_poses in self._body_poses])
         wxyzs = np.concatenate([body_poses.rotations[links] for body_poses in self._body_poses])
-        return positions.astype(np.float32), wxyzs.astype(np.float32)
+        return _Instances(positions.astype(np.float32), wxyzs.astype(np.float32))
+
+
+class _Instances(NamedTuple):
+    """Poses of the instances of a batched mesh, by viser's names."""
+
+    batched_positions: NDArray[np.float32]
+    """(lanes · links, 3) [m]."""
+    batched_wxyzs: NDArray[np.float32]
+    """Quaternions, (lanes · links, 4)."""
 
 
 def label_text(

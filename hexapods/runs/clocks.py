@@ -88,6 +88,8 @@ class Timetable:
 
     def extend(self, steps: LaneSteps) -> None:
         """Add the steps of the lane that were taken since."""
+        if len(steps) == len(self):
+            return
         figures = steps.figures[len(self) :]
         motions = motions_s(figures)
         times = np.empty(len(figures), self._times.rows.dtype)

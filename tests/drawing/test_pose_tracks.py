@@ -12,7 +12,7 @@ from hexapods.drawing.pose_tracks import POSE_STEP, PoseTracks
 from hexapods.drawing.replay_encoding import encode_frames
 from hexapods.drawing.scene import StageScene
 from hexapods.drawing.viser_internals.recorder import recorder
-from hexapods.drawing.viser_internals.server import in_process_viser
+from hexapods.drawing.viser_internals.server import recorded_viser
 from hexapods.drawing.viser_internals.stream import Message
 from hexapods.shows.replay import Replay
 from tests.drawing.replay_decoding import decoded, unpacked
@@ -42,7 +42,7 @@ def readable(message: Message, arrays: list[Any]) -> dict[str, Any]:
 
 def drawn(replay: Replay, times_s: list[float]) -> list[list[dict[str, Any]]]:
     """Return the messages by which each frame is drawn, without an encoding."""
-    with in_process_viser() as server, recorder(server) as recording:
+    with recorded_viser() as server, recorder(server) as recording:
         scene, frames = StageScene(server), []
         for time_s in [0.0, *times_s]:
             scene.draw(replay.frame_at(time_s))

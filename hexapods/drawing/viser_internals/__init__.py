@@ -2,7 +2,8 @@
 
 Only this package imports viser's private modules or uses its private attributes; the rest of the
 app draws with viser's public functions. `server` runs viser without a socket, `stream` decodes and
-encodes what it sends, `recorder` keeps what is drawn, `client` is its page in the browser, patched.
+encodes what it sends, `recorder` keeps what is drawn, `batches` moves the instances of meshes,
+`client` is its page in the browser, patched.
 
 viser promises none of the following, so each is checked by the test of the same name in
 `tests/drawing/viser_internals/test_assumptions.py`. If a new version breaks one, its test fails.
@@ -21,6 +22,10 @@ Assumed by `server`:
   whole scene first, and then `_backlog_done_message`, a `ReplayDoneMessage`.
 - tunnel_has_one_entrance: only `ViserServer.request_share_url` opens a public tunnel.
 - prints_go_through_rich: viser writes to the console through `rich` only.
+- closed_loops_wake_nothing: viser draws the same if the event loop of its message buffer is closed;
+  of a server's thread it only uses `WebsockServer.start` and `stop`, and `_server_thread` if any.
+- types_are_looked_up: a handle's `_prop_hints` is what `get_type_hints` of its module returns for
+  the class of its properties, and only read.
 
 Assumed by `stream`:
 
@@ -37,6 +42,13 @@ Assumed by `recorder`:
 - serializers_get_each_message: `queue_message` passes each message to every serializer in
   `_record_handles`, under `_record_lock`; a `StateSerializer` keeps them in `_messages`, with their
   arrays in `_binary_buffers`; `message_from_id` of the buffer is the whole scene.
+- changes_of_an_array_are_plain: `as_serializable_dict` of a `SceneNodeUpdateMessage` of one array
+  is its name, the array by its index, the owner and the type.
+
+Assumed by `batches`:
+
+- instances_are_properties: assigning `batched_positions` or `batched_wxyzs` of a mesh writes them
+  into the array of that name in `_impl.props`, and calls `_queue_update` with the name and a copy.
 
 Assumed by `client`:
 

@@ -4,7 +4,10 @@ import contextlib
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+import numpy as np
 import viser
+from viser import _messages
+from viser.infra import Message as ViserMessage
 from viser.infra import StateSerializer
 
 from hexapods.drawing.viser_internals.stream import BLOCKED_TYPES, Message
@@ -19,6 +22,23 @@ class Recorded(NamedTuple):
 
 class _Recorder(StateSerializer):
     """Takes the place of a serializer of a whole file, but can be emptied again and again."""
+
+    def _insert_message(self, message: ViserMessage) -> None:
+        """Add a message; changes of one array, as most are, without looking up annotations."""
+        if type(message) is _messages.SceneNodeUpdateMessage and len(message.updates) == 1:
+            ((name, value),) = message.updates.items()
+            if isinstance(value, np.ndarray) and value.flags.c_contiguous:
+                reference = {"__binary_index": len(self._binary_buffers), "dtype": value.dtype.str}
+                self._binary_buffers.append(value.data)
+                recorded = {
+                    "name": message.name,
+                    "updates": {name: reference},
+                    "owner": message.owner,
+                    "type": "SceneNodeUpdateMessage",
+                }
+                self._messages.append((self._time, recorded))
+                return
+        super()._insert_message(message)
 
     def take(self) -> Recorded:
         """Return the messages recorded since the last call, and clear the record."""

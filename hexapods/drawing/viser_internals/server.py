@@ -1,9 +1,10 @@
-"""A viser server without a listener: its stream is read in-process, and it receives no messages.
+"""viser servers without a listener: what they draw is read in-process, and no message reaches them.
 
 viser 1.1.1 listens on a TCP port without authentication, and one of the messages that it accepts
-there (`ShareUrlRequest`) starts a process that opens a public tunnel. So this server binds no
-socket: it keeps viser's message buffer, thread and encoder, and passes the encoded windows to the
-one reader in this process, the hub. No message reaches viser from outside.
+there (`ShareUrlRequest`) starts a process that opens a public tunnel. So these servers bind no
+socket. `RecordedViser` has neither a thread, and is what most drawing needs; `InProcessViser` keeps
+viser's message buffer, thread and encoder, and passes the encoded windows to the one reader in this
+process, the hub.
 """
 
 import asyncio
@@ -11,11 +12,12 @@ import contextlib
 import itertools
 import threading
 from collections.abc import AsyncGenerator, Iterator
-from typing import Any
+from functools import cache
+from typing import Any, ClassVar, get_type_hints
 
 import rich
 import viser
-from viser import infra
+from viser import _assignable_props_api, infra
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
@@ -44,22 +46,80 @@ class _Broadcaster(infra.WebsockServer):
         await asyncio.gather(*tasks, return_exceptions=True)
 
 
-class InProcessViser(viser.ViserServer):
-    """A viser server whose scene is read through `frames` only: no port, no clients, no tunnel."""
+class _Unread(infra.WebsockServer):
+    """viser's messages as serializers take them, without a thread, an event loop or a socket.
+
+    Its loop is closed from the start, so that viser wakes nothing; once a serializer is registered,
+    messages are not kept for clients any more.
+    """
+
+    def start(self) -> None:
+        """Make the message buffer."""
+        self._background_event_loop = _closed_loop()
+        self._broadcast_buffer = AsyncMessageBuffer(
+            self._background_event_loop, persistent_messages=True
+        )
+
+    def stop(self) -> None:
+        """Do nothing: there is no thread."""
+
+    def queue_message(self, message: infra.Message) -> None:
+        """Pass a message to the serializers, or keep it for the first one."""
+        with self._record_lock:
+            for serializer in self._record_handles:
+                serializer._insert_message(message)
+            if not self._record_handles:
+                self.get_message_buffer().push(message)
+
+
+@cache
+def _closed_loop() -> asyncio.AbstractEventLoop:
+    loop = asyncio.new_event_loop()
+    loop.close()
+    return loop
+
+
+class ViserWithoutSocket(viser.ViserServer):
+    """A viser server without a port, clients or a tunnel.
+
+    Raises:
+        RuntimeError: This version of viser creates its server in another way.
+    """
+
+    _server_class: ClassVar[type[infra.WebsockServer]]
 
     def __init__(self) -> None:
-        """Start viser's thread.
-
-        Raises:
-            RuntimeError: This version of viser creates its server in another way.
-        """
-        self._client_ids = itertools.count()
         # viser's constructor accepts no server, so the class it instantiates is replaced meanwhile.
-        with _construction_lock, _without_listener(), _quiet():
+        with _construction_lock, _instead_of_listener(self._server_class), _quiet():
             super().__init__(host="127.0.0.1", port=0, label=None, verbose=False)
-        if not isinstance(self._websock_server, _Broadcaster):
+        if not isinstance(self._websock_server, self._server_class):
             self.stop()
             raise RuntimeError(f"viser {viser.__version__} does not take a server without a port")
+
+    def request_share_url(self, verbose: bool = True) -> str | None:
+        """Do nothing and return None: no tunnel, since the scene is read in this process only."""
+        del verbose
+        return None
+
+    def disconnect_share_url(self) -> None:
+        """Do nothing: there is never a tunnel."""
+
+
+class RecordedViser(ViserWithoutSocket):
+    """A viser server that only draws: what it draws is taken by a recorder or a serializer."""
+
+    _server_class = _Unread
+
+
+class InProcessViser(ViserWithoutSocket):
+    """A viser server whose scene is read through `frames` only."""
+
+    _server_class = _Broadcaster
+
+    def __init__(self) -> None:
+        """Start viser's thread."""
+        self._client_ids = itertools.count()
+        super().__init__()
 
     async def frames(self) -> AsyncGenerator[bytes, None]:
         """Yield encoded frames as a new client receives them: first the scene, then its changes.
@@ -91,14 +151,6 @@ class InProcessViser(viser.ViserServer):
         finally:
             future.cancel()
         raise ConnectionError("viser has stopped")
-
-    def request_share_url(self, verbose: bool = True) -> str | None:
-        """Do nothing and return None: no tunnel, since the scene is read through the hub only."""
-        del verbose
-        return None
-
-    def disconnect_share_url(self) -> None:
-        """Do nothing: there is never a tunnel."""
 
 
 class _FrameQueue:
@@ -134,10 +186,10 @@ class _FrameQueue:
 
 
 @contextlib.contextmanager
-def _without_listener() -> Iterator[None]:
+def _instead_of_listener(server_class: type[infra.WebsockServer]) -> Iterator[None]:
     """Replace viser's server class meanwhile, so that its constructor opens no socket."""
     original = infra.WebsockServer
-    infra.WebsockServer = _Broadcaster  # type: ignore[misc]
+    infra.WebsockServer = server_class  # type: ignore[misc]
     try:
         yield
     finally:
@@ -156,6 +208,17 @@ def in_process_viser() -> Iterator[InProcessViser]:
 
 
 @contextlib.contextmanager
+def recorded_viser() -> Iterator[RecordedViser]:
+    """Draw in a viser server of which a recorder or a serializer takes what is drawn."""
+    server = RecordedViser()
+    try:
+        yield server
+    finally:
+        with _quiet():
+            server.stop()
+
+
+@contextlib.contextmanager
 def _quiet() -> Iterator[None]:
     """Silence viser's console, which would print an address that does not exist."""
     console = rich.get_console()
@@ -164,3 +227,10 @@ def _quiet() -> Iterator[None]:
         yield
     finally:
         console.quiet = before
+
+
+# viser resolves the types of a node's properties anew for each node, a third of the time that it
+# takes to draw a scene.
+_assignable_props_api.get_type_hints = cache(  # type: ignore[attr-defined, assignment]
+    get_type_hints
+)

@@ -134,6 +134,23 @@ def draw(server: viser.ViserServer, value: float) -> None:
     server.initial_camera.fov = value
 
 
+def draw_twice(server: viser.ViserServer) -> viser.BatchedMeshHandle:
+    """Draw nodes of some kinds, change them, and remove one; returns a batch of two instances."""
+    scene = server.scene
+    label = scene.add_label("/world/label", "a word")
+    batch = scene.add_batched_meshes_simple(
+        "/world/batch",
+        np.eye(3, dtype=np.float32),
+        np.array([[0, 1, 2]], np.uint32),
+        batched_positions=np.zeros((2, 3)),
+        batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (2, 1)),
+    )
+    label.text, label.position = "another", (1.0, 2.0, 3.0)
+    batch.batched_positions = np.ones((2, 3), np.float32)
+    scene.add_frame("/world/gone").remove()
+    return batch
+
+
 def test_every_assumption_has_its_test() -> None:
     listed = re.findall(r"^- (\w+): ", viser_internals.__doc__ or "", re.MULTILINE)
     tested = [name for name in vars(sys.modules[__name__]) if name.startswith("test_")]
@@ -250,6 +267,35 @@ def test_prints_go_through_rich(
 # ---- assumed by stream
 
 
+def test_closed_loops_wake_nothing() -> None:
+    from hexapods.drawing.viser_internals.recorder import recorder
+    from hexapods.drawing.viser_internals.server import in_process_viser, recorded_viser
+
+    taken = []
+    for running in (recorded_viser, in_process_viser):
+        with running() as server, recorder(server) as recording:
+            with server.atomic():
+                draw_twice(server)
+            server.flush()
+            messages, arrays = recording.take()
+            taken.append(([{**m, "uuid": "", "run_id": ""} for m in messages], list(arrays)))
+            is_threaded = server._websock_server._server_thread is not None
+            assert is_threaded == (running is in_process_viser)
+    assert taken[0] == taken[1]
+    assert len(taken[0][0]) > 10
+
+
+def test_types_are_looked_up(viser_server: InProcessViser) -> None:
+    from typing import get_type_hints
+
+    frame, other = viser_server.scene.add_frame("/a"), viser_server.scene.add_frame("/b")
+    draw_twice(viser_server)
+
+    hints = frame._prop_hints
+    assert hints == get_type_hints(type(frame._impl.props))
+    assert other._prop_hints is hints, "looked up once for the class"
+
+
 def test_frame_layout() -> None:
     from hexapods.drawing.viser_internals import stream
 
@@ -332,9 +378,6 @@ def test_commands_to_the_browser(client: str) -> None:
     assert commands == BLOCKED_TYPES | {"TransformControlsMessage", "guiUpdate"}
 
 
-# ---- assumed by client
-
-
 def test_serializers_get_each_message() -> None:
     from hexapods.drawing.viser_internals.recorder import recorder
     from hexapods.drawing.viser_internals.server import in_process_viser
@@ -351,6 +394,52 @@ def test_serializers_get_each_message() -> None:
 
     assert "/one" in {message.get("name") for message in scene.messages}
     assert [message["name"] for message in changes.messages][:2] == ["/one", "/two"]
+
+
+def test_changes_of_an_array_are_plain(viser_server: InProcessViser) -> None:
+    from viser import _messages
+    from viser.infra import StateSerializer
+
+    from hexapods.drawing.viser_internals.recorder import recorder
+
+    for value in (np.arange(6, dtype=np.float32), np.zeros((2, 3), np.uint8)):
+        message = _messages.SceneNodeUpdateMessage("/a", {"batched_positions": value})
+        message.owner = "someone"
+        with recorder(viser_server) as recording:
+            recording.take()
+            recording._insert_message(message)
+            plain = recording.take()
+            StateSerializer._insert_message(recording, message)
+            assert recording.take() == plain
+
+
+# ---- assumed by batches
+
+
+def test_instances_are_properties(viser_server: InProcessViser) -> None:
+    from hexapods.drawing.viser_internals.batches import move_instances
+    from hexapods.drawing.viser_internals.recorder import recorder
+
+    batch = draw_twice(viser_server)
+    for name, size in (("batched_positions", 3), ("batched_wxyzs", 4)):
+        first, second = np.random.default_rng(1).random((2, 2, size)).astype(np.float32)
+        setattr(batch, name, first)
+        with recorder(viser_server) as recording:
+            recording.take()
+            setattr(batch, name, second)
+            assigned = recording.take()
+            move_instances(batch, name, first)
+            move_instances(batch, name, second)
+            moved = recording.take()
+        assert moved.messages[1] == {
+            **assigned.messages[0],
+            "updates": {name: {"__binary_index": 1, "dtype": "<f4"}},
+        }
+        assert moved.arrays[1] == assigned.arrays[0]
+        assert np.array_equal(getattr(batch, name), second)
+
+
+# ---- assumed by client
 
 
 def test_page_is_one_file() -> None:
