@@ -28,7 +28,7 @@ LIMITS = {
     "two_step_decision_over_motion": "at most 1.0 on two idle cores",
     "planning_overhead": "at most 0.10",
     "picture_encoding_share": "at most 0.05",
-    "picture_bytes_per_second": "at most 18,000",
+    "picture_bytes_per_second": "at most 9,000",
 }
 
 
