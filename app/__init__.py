@@ -10,8 +10,8 @@ docs/architecture.md has a row for each package.
 
 Processes and threads:
 
-- Server: the event loop (HTTP, events, the hub), worker threads for routes, a thread for each job
-  that receives its messages, that of the supervisor, and one for each stage that draws.
+- Server: the event loop (HTTP, events), worker threads for routes, a thread for each job that
+  receives its messages, that of the supervisor, and one for each stage that advances it.
 - Fork server, on Linux: that of `multiprocessing`, started first (`hexapods.processes`). The
   processes of jobs and pools are its forks. It ends when the server does, and they with it. `top`
   shows it as `python`, and jobs by kind and id.

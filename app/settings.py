@@ -73,7 +73,7 @@ class Settings:
         job_niceness: by how much the priority of jobs is lower than the server's own, 0 to 19.
         log_level: level below which records are left out of the log.
         quota_mb: maximum size of the data folder, in MB; None for as much as the disk has.
-        max_viewers: maximum number of viewers of the stage, and of listeners to its events.
+        max_viewers: maximum number of streams of events, and so of pages that watch.
         without: names of the features that are left out.
         features: settings of features, of those that are left out, too.
     """

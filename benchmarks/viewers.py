@@ -80,7 +80,7 @@ def _piece(body: dict[str, Any]) -> Piece:
 def time_at(playhead: dict[str, Any], now_s: float) -> float:
     """Return the time of the run that a playhead shows at a time of the server's clock [s]."""
     points: list[tuple[float, float]] = playhead["points"]
-    after_s = now_s - playhead["at_s"]
+    after_s: float = now_s - playhead["at_s"]
     index = bisect.bisect_right(points, after_s, key=lambda point: point[0])
     if index == 0:
         return float(points[0][1])

@@ -1,9 +1,9 @@
-"""Promise 7: many viewers: 200 for 10 minutes: in the median 20 frames/s or more each, and 95 % of
-commands, and of the API's other answers, in under 250 ms. Pages that play runs by themselves get 30
-pictures/s, 20 of them beside 30 viewers.
+"""Promise 7: many viewers: 200 for 10 minutes: each has the frames of every moment before it is
+shown, but for 1 % of the time at most, and 95 % of commands, and of the API's other answers, come
+in under 250 ms. Pages that fetch their frames get them in time, 20 of them beside 30 viewers.
 
 In full by `make soak`. The gate's shorter form has 30 viewers for 5 s; since it shares the machine
-with other tests, it requires that every viewer stays and gets frames, and every command an answer.
+with other tests, it requires that every viewer stays and gets pieces, and every command an answer.
 """
 
 import argparse
@@ -25,17 +25,18 @@ from tests.timeouts import LONG_S
 
 VIEWERS = at_length(30, 200)
 SECONDS = at_length(5.0, 600.0)
-MIN_FRAMES_PER_S = at_length(0.0, 20.0)
+MAX_GAP_SHARE = at_length(1.0, 0.01)
 MAX_P95_MS = at_length(LONG_S * 1e3, 250.0)
 
 
 def watch(
-    server: Serving, viewers: int, seconds: float, stalled: int = 0, replays: int = 0
+    server: Serving, viewers: int, seconds: float, stalled: int = 0, fetching: int = 0
 ) -> dict[str, float]:
     """Connect viewers for some seconds by `benchmarks.viewers`, and return its figures."""
     options = argparse.Namespace(
-        viewers=viewers, seconds=seconds, stalled=stalled, view="leader", replays=replays
+        viewers=viewers, seconds=seconds, stalled=stalled, fetching=fetching, pid=server.pid
     )
+    setattr(options, "from", None)
     return asyncio.run(measure("127.0.0.1", server.port, options))
 
 
@@ -78,7 +79,7 @@ def controlling_stage(server: Serving) -> Iterator[list[float]]:
 
 
 @pytest.mark.timeout(1200)
-def test_frame_rate_and_latencies_with_many_viewers(server: Serving) -> None:
+def test_gaps_and_latencies_with_many_viewers(server: Serving) -> None:
     start_moving(server)
     with controlling_stage(server) as latencies_s:
         figures = watch(server, VIEWERS, SECONDS)
@@ -86,28 +87,28 @@ def test_frame_rate_and_latencies_with_many_viewers(server: Serving) -> None:
     assert len(latencies_s) > at_length(1, 10)
     assert statistics.quantiles(latencies_s, n=20)[-1] * 1e3 < MAX_P95_MS
     assert figures["viewers_lost"] == 0
-    assert figures["frames_per_s_median"] > MIN_FRAMES_PER_S
+    assert figures["pieces_lowest"] > 0
+    assert figures["gap_share"] < MAX_GAP_SHARE
     assert figures["healthz_p95_ms"] < MAX_P95_MS
 
 
 @pytest.mark.timeout(1200)
-def test_pages_that_replay_runs_get_their_pictures(server: Serving) -> None:
-    for seed in range(at_length(1, 4)):
-        body: dict[str, Any] = {
-            "gait": "left-right-origin",
-            "simulator": "kinematic",
-            "seed": seed,
-            "lanes": [{"agent": "greedy"}, {"agent": "greedy"}, {"agent": "two-step"}],
-        }
-        race = httpx2.post(f"{server.address}api/v1/races", json=body).json()
-        while (
-            httpx2.get(f"{server.address}api/v1/races/{race['id']}").json()["state"] != "finished"
-        ):
-            time.sleep(0.05)
-    start_moving(server)
-    figures = watch(server, at_length(3, 30), at_length(3.0, 60.0), replays=at_length(3, 20))
+def test_pages_that_fetch_get_their_frames(server: Serving) -> None:
+    body: dict[str, Any] = {
+        "gait": "left-right-origin",
+        "simulator": "kinematic",
+        "lanes": [{"agent": "greedy"}, {"agent": "greedy"}, {"agent": "two-step"}],
+    }
+    race = httpx2.post(f"{server.address}api/v1/races", json=body).json()
+    while httpx2.get(f"{server.address}api/v1/races/{race['id']}").json()["state"] != "finished":
+        time.sleep(0.05)
+    body = {"run_id": race["id"], "time_s": 0, "playing": True, "speed": 1}
+    httpx2.put(f"{server.address}api/v1/stage", json=body).raise_for_status()
+    viewers, fetching = at_length(3, 30), at_length(3, 20)
+    figures = watch(server, viewers, at_length(3.0, 15.0), fetching=fetching)
 
-    assert figures["viewers_lost"] == 0
-    assert figures["frames_per_s_median"] > at_length(0.0, 25.0)
-    assert figures["pictures_per_s_median"] > at_length(0.0, 25.0)
-    assert figures["pictures_per_s_lowest"] > at_length(0.0, 25.0)
+    assert figures["viewers_lost"] == figures["fetch_failures"] == 0
+    assert figures["requests"] >= fetching
+    assert figures["gap_share"] < MAX_GAP_SHARE
+    # A segment is 2.1 s of the picture, and is fetched a second before.
+    assert figures["fetch_p95_ms"] < at_length(LONG_S * 1e3, 1000.0)
