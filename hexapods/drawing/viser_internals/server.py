@@ -21,7 +21,7 @@ from viser import _assignable_props_api, infra
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-_construction_lock = threading.Lock()
+_console_lock = threading.Lock()
 
 
 class _Broadcaster(infra.WebsockServer):
@@ -90,7 +90,7 @@ class ViserWithoutSocket(viser.ViserServer):
 
     def __init__(self) -> None:
         # viser's constructor accepts no server, so the class it instantiates is replaced meanwhile.
-        with _construction_lock, _instead_of_listener(self._server_class), _quiet():
+        with _quiet(), _instead_of_listener(self._server_class):
             super().__init__(host="127.0.0.1", port=0, label=None, verbose=False)
         if not isinstance(self._websock_server, self._server_class):
             self.stop()
@@ -214,19 +214,24 @@ def recorded_viser() -> Iterator[RecordedViser]:
     try:
         yield server
     finally:
-        with _quiet():
-            server.stop()
+        server.stop()
 
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Silence viser's console, which would print an address that does not exist."""
+    """Silence viser's console, which would print an address that does not exist.
+
+    One thread at a time is in it, so that each restores what was there before.
+    """
     console = rich.get_console()
-    before, console.quiet = console.quiet, True
-    try:
-        yield
-    finally:
-        console.quiet = before
+    with _console_lock:
+        before, console.quiet = console.quiet, True
+        # A quiet console lays its tables out nevertheless, which takes longer than starting viser.
+        printing, rich.print = rich.print, lambda *_objects, **_settings: None
+        try:
+            yield
+        finally:
+            console.quiet, rich.print = before, printing
 
 
 # viser resolves the types of a node's properties anew for each node, a third of the time that it
