@@ -66,8 +66,8 @@ class PoseTracks:
         self._values[number].append(values)
         return number
 
-    def pack(self) -> tuple[dict[str, Any], bytes]:
-        """Return the description of the tracks, as JSON has it, and their poses."""
+    def pack(self) -> tuple[dict[str, Any], list[bytes]]:
+        """Return the description of the tracks, as JSON has it, and the planes of their poses."""
         numbers: dict[tuple[int, bytes], int] = {}
         series, blocks, tracks = [], [], []
         for (_, name, size), message, values in zip(
@@ -87,7 +87,7 @@ class PoseTracks:
         planes = (int(codes.max(initial=0)).bit_length() + 7) // 8
         by_byte = codes.astype("<u4").view(np.uint8).reshape(-1, 4)
         description = {"step": POSE_STEP, "planes": planes, "series": series, "tracks": tracks}
-        return description, by_byte[:, :planes].T.tobytes()
+        return description, [by_byte[:, plane].tobytes() for plane in range(planes)]
 
 
 def rounded_poses(array: memoryview) -> memoryview:

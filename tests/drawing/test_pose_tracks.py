@@ -79,7 +79,8 @@ def packed_and_unpacked(kind: str, name: str, frames: list[Any]) -> tuple[int, N
             assert tracks.take(message, [array]) == 0
         else:
             assert tracks.take({**message, name: tuple(values)}, []) == 0
-    description, data = tracks.pack()
+    description, planes = tracks.pack()
+    data = b"".join(planes)
     (series,), place = unpacked(description, data, 0)
     assert place == len(data)
     return description["planes"], series * description["step"]
@@ -128,11 +129,11 @@ def test_nodes_that_move_together_share_their_poses() -> None:
             updates = {"batched_positions": {"__binary_index": 0, "dtype": "<f4"}}
             message = {"type": "SceneNodeUpdateMessage", "name": node, "updates": updates}
             tracks.take(message, [array])
-    description, data = tracks.pack()
+    description, planes = tracks.pack()
 
     assert description["series"] == [(3, 10)]
     assert [track["series"] for track in description["tracks"]] == [0, 0]
-    assert len(data) == description["planes"] * 30
+    assert [len(plane) for plane in planes] == [30] * description["planes"]
 
 
 def test_a_message_that_is_not_just_a_pose_is_not_taken() -> None:
