@@ -1,6 +1,5 @@
 """`hexapods serve` as people run it: a process of its own, on loopback."""
 
-import json
 import os
 import signal
 import subprocess
@@ -13,12 +12,12 @@ from typing import IO, Any
 import httpx2
 import psutil
 
+from tests.event_streams import ReceivedEvent, open_stream
 from tests.forked import HEXAPODS, start_hexapods
 from tests.timeouts import LONG_S, ProgressTimeout
 
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
 ENDLESS = {**BODY, "steps": 10_000_000, "pace": 20, "evaluate_every": 0}
-Events = Iterator[tuple[str, Any, str]]
 
 
 def environ(**variables: str) -> dict[str, str]:
@@ -116,19 +115,10 @@ class Served:
         family = psutil.Process(self.process.pid).children(recursive=True)
         return [process for process in family if is_job(process)]
 
-    def events(self, query: str = "", last: str | None = None) -> Events:
+    def events(self, query: str = "", last: str | None = None) -> Iterator[ReceivedEvent]:
         headers = {} if last is None else {"Last-Event-ID": last}
-        path = f"/api/v1/events{query}"
-        with self.client.stream("GET", path, headers=headers) as response:
-            assert response.status_code == 200
-            assert response.headers["content-type"].startswith("text/event-stream")
-            event: dict[str, str] = {}
-            for line in response.iter_lines():
-                name, _, value = line.partition(": ")
-                event[name] = value
-                if not line and "data" in event:
-                    yield event["event"], json.loads(event["data"]), event["id"]
-                    event = {}
+        with open_stream(self.client, f"/api/v1/events{query}", headers=headers) as stream:
+            yield from stream.events
 
     def end(self, by: int = signal.SIGTERM) -> int:
         self.client.close()

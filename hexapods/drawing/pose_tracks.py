@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.drawing.viser_internals.stream import Message, array_index
+from hexapods.drawing.viser_internals.messages import Message, array_index
 
 POSE_STEP = 2.0**-13
 """Poses are multiples of this: positions [m] and components of unit quaternions.

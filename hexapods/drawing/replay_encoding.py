@@ -25,9 +25,9 @@ from hexapods.drawing.pose_tracks import PoseTracks, pose_arrays, rounded_poses
 from hexapods.drawing.posture import draw_posture
 from hexapods.drawing.scene import StageScene, grid_root
 from hexapods.drawing.track import WORLD
+from hexapods.drawing.viser_internals.messages import LIFECYCLES, Message, remap_buffers
 from hexapods.drawing.viser_internals.recorder import Recorded, recorder
 from hexapods.drawing.viser_internals.server import recorded_viser
-from hexapods.drawing.viser_internals.stream import LIFECYCLES, Message, remap_buffers
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S, Replay
 from hexapods.shows.scene_view import scene_view
 from hexapods.shows.stage_frame import StageFrame

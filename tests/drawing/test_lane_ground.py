@@ -12,15 +12,15 @@ from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
 from hexapods.drawing.condition_colors import GRIP, ICE
 from hexapods.drawing.scene import StageScene
-from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals.server import RecordedViser
 from hexapods.shows.stage_frame import AT_ORIGIN, Origin
-from tests.viewer.drawing import frame_at_rest, frame_of, race_of, scene_nodes
+from tests.drawing.drawn_scene import frame_at_rest, frame_of, race_of, scene_nodes
 
 GROUND = "/world/run/lane0/ground"
 
 
 def drawn(
-    server: InProcessViser, *disturbances: Disturbance, origin: Origin = AT_ORIGIN
+    server: RecordedViser, *disturbances: Disturbance, origin: Origin = AT_ORIGIN
 ) -> dict[str, dict[str, object]]:
     """Return the nodes of the first lane's ground, by the last part of their names."""
     spec = race_of(1)
@@ -38,7 +38,7 @@ def points(node: dict[str, object]) -> FloatArray:
 
 @pytest.mark.parametrize("origin", [AT_ORIGIN, Origin(3.1, -2.2, 0.7)])
 def test_bumps_are_as_high_as_those_that_the_feet_touch(
-    server: InProcessViser, origin: Origin
+    server: RecordedViser, origin: Origin
 ) -> None:
     rough = Rough(amplitude_m=0.02, seed=5)
     heights = rough_heights(rough)
@@ -58,7 +58,7 @@ def test_bumps_are_as_high_as_those_that_the_feet_touch(
     assert np.corrcoef(surface[:, 2], nearest)[0, 1] > 0.97
 
 
-def test_higher_ground_is_lighter(server: InProcessViser) -> None:
+def test_higher_ground_is_lighter(server: RecordedViser) -> None:
     bands = drawn(server, Rough(amplitude_m=0.02)).values()
     in_order = sorted(bands, key=lambda band: points(band)[:, 2].mean())
     reds = [band["color"][0] for band in in_order]  # type: ignore[index]
@@ -67,13 +67,13 @@ def test_higher_ground_is_lighter(server: InProcessViser) -> None:
     assert reds[0] < reds[-1]
 
 
-def test_lines_lie_over_the_bumps(server: InProcessViser) -> None:
+def test_lines_lie_over_the_bumps(server: RecordedViser) -> None:
     drawn(server, Rough(amplitude_m=0.02))
 
     assert scene_nodes(server)["/world/run/track/finish"]["position"][2] > 0.02
 
 
-def test_patch_lies_where_it_is_slippery(server: InProcessViser) -> None:
+def test_patch_lies_where_it_is_slippery(server: RecordedViser) -> None:
     (patch,) = drawn(server, Patch(from_m=0.1, to_m=0.25, friction=0.05)).values()
     corners = points(patch)
 
@@ -83,7 +83,7 @@ def test_patch_lies_where_it_is_slippery(server: InProcessViser) -> None:
 
 
 def test_patch_is_turned_under_a_robot_that_is_drawn_straight_ahead(
-    server: InProcessViser,
+    server: RecordedViser,
 ) -> None:
     """The robot has walked to (0, 0.2) and looks to the left, so the strip runs along its lane."""
     origin = Origin(0.0, 0.2, math.pi / 2)
@@ -94,11 +94,11 @@ def test_patch_is_turned_under_a_robot_that_is_drawn_straight_ahead(
     assert np.ptp(corners[:, 1]) == pytest.approx(2.5)
 
 
-def test_patch_out_of_sight_is_not_drawn(server: InProcessViser) -> None:
+def test_patch_out_of_sight_is_not_drawn(server: RecordedViser) -> None:
     assert drawn(server, Patch(from_m=10, to_m=11, friction=0.05)) == {}
 
 
-def test_colour_says_whether_the_ground_grips_less_or_more(server: InProcessViser) -> None:
+def test_colour_says_whether_the_ground_grips_less_or_more(server: RecordedViser) -> None:
     ice = drawn(server, Friction(value=0.1), Patch(from_m=0.1, to_m=0.25, friction=0.2))
     rubber = drawn(server, Friction(value=2.0))
 
@@ -111,7 +111,7 @@ def test_colour_says_whether_the_ground_grips_less_or_more(server: InProcessVise
     ("direction_deg", "turn_rad", "uphill_deg"), [(0, 0, 0), (90, 0, 90), (0, math.pi / 2, -90)]
 )
 def test_arrows_point_uphill(
-    server: InProcessViser, direction_deg: float, turn_rad: float, uphill_deg: float
+    server: RecordedViser, direction_deg: float, turn_rad: float, uphill_deg: float
 ) -> None:
     slope = Slope(degrees=8, direction_deg=direction_deg)
     nodes = drawn(server, slope, origin=Origin(0, 0, turn_rad))
@@ -121,7 +121,7 @@ def test_arrows_point_uphill(
     assert {node["text"] for node in nodes.values() if "text" in node} == {"8° uphill"}
 
 
-def test_each_lane_has_its_own_ground_and_nothing_is_left_of_it(server: InProcessViser) -> None:
+def test_each_lane_has_its_own_ground_and_nothing_is_left_of_it(server: RecordedViser) -> None:
     spec, scene = race_of(2), StageScene(server)
     lane = frame_at_rest(spec).lanes[0]
     scene.draw(frame_of(spec, lane, lane))

@@ -9,15 +9,15 @@ import pytest
 from hexapods.domain.disturbances import Payload, Push
 from hexapods.domain.world import World
 from hexapods.drawing.scene import StageScene
-from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals.server import RecordedViser
 from hexapods.physics.mjcf import compile_model
 from hexapods.shows.stage_frame import Origin
-from tests.viewer.drawing import frame_at_rest, frame_of, race_of, scene_nodes
+from tests.drawing.drawn_scene import frame_at_rest, frame_of, race_of, scene_nodes
 
 CUBE, ARROW = "/world/run/lane0/payload/cube", "/world/run/lane0/push/arrow0"
 
 
-def test_payload_is_drawn_where_it_is_simulated(server: InProcessViser) -> None:
+def test_payload_is_drawn_where_it_is_simulated(server: RecordedViser) -> None:
     """On a torso that was tilted sideways by 90° and stands at (0.1, 0.3, 0.2)."""
     spec, payload = race_of(1), Payload(kg=1.0, x_m=0.08, y_m=-0.03)
     world = World((payload,))
@@ -40,7 +40,7 @@ def test_payload_is_drawn_where_it_is_simulated(server: InProcessViser) -> None:
     [(0, 0, (0, -1)), (90, 0, (1, 0)), (180, 0, (0, 1)), (90, math.pi / 2, (0, -1))],
 )
 def test_push_is_an_arrow_from_where_it_comes(
-    server: InProcessViser, direction_deg: float, turn_rad: float, from_side: tuple[float, float]
+    server: RecordedViser, direction_deg: float, turn_rad: float, from_side: tuple[float, float]
 ) -> None:
     spec, push = race_of(1), Push(impulse_ns=2.0, direction_deg=direction_deg)
     lane = replace(frame_at_rest(spec).lanes[0], pushes=(push,), origin=Origin(0, 0, turn_rad))
@@ -55,7 +55,7 @@ def test_push_is_an_arrow_from_where_it_comes(
     assert (math.sin(turn), -math.cos(turn)) == pytest.approx(from_side, abs=1e-6), "its tail"
 
 
-def test_payload_and_push_are_removed_when_they_end(server: InProcessViser) -> None:
+def test_payload_and_push_are_removed_when_they_end(server: RecordedViser) -> None:
     spec, scene = race_of(1), StageScene(server)
     lane = frame_at_rest(spec).lanes[0]
     world = World((Payload(kg=1.0),))

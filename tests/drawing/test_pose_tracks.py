@@ -11,9 +11,9 @@ from app.stage.playback import Replays
 from hexapods.drawing.pose_tracks import POSE_STEP, PoseTracks
 from hexapods.drawing.replay_encoding import encode_frames
 from hexapods.drawing.scene import StageScene
+from hexapods.drawing.viser_internals.messages import Message
 from hexapods.drawing.viser_internals.recorder import recorder
 from hexapods.drawing.viser_internals.server import recorded_viser
-from hexapods.drawing.viser_internals.stream import Message
 from hexapods.shows.replay import Replay
 from tests.drawing.replay_decoding import decoded, unpacked
 from tests.stage.stage_parts import StageParts

@@ -16,10 +16,10 @@ from hexapods.drawing.footgrid import ABOVE_GROUND_M, FootGridDrawing
 from hexapods.drawing.posture import posture
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import grid_root
-from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals.server import RecordedViser
+from tests.drawing.drawn_scene import race_of, scene_nodes
 from tests.drawing.replay_decoding import decoded
 from tests.stage.stage_parts import StageParts
-from tests.viewer.drawing import race_of, scene_nodes
 from tests.viewer.test_replay_frames import LANES, frames_of, shown
 
 FAR = 0.2
@@ -29,7 +29,7 @@ FAR = 0.2
 @pytest.mark.parametrize("gait", PAPER_GAITS)
 @pytest.mark.parametrize(("divisions", "cells"), [(2, (0, 3, 1)), (2, (4, 4, 2)), (3, (8, 0, 5))])
 def test_feet_of_a_ghost_stand_in_the_cells_that_are_drawn(
-    server: InProcessViser, gait: str, divisions: int, cells: Cells
+    server: RecordedViser, gait: str, divisions: int, cells: Cells
 ) -> None:
     spec = race_of(1)
     azimuths = [leg.azimuth_deg for leg in spec.robot.legs]

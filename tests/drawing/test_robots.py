@@ -11,9 +11,9 @@ from hexapods.domain.world import World
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.robots import label_text
 from hexapods.drawing.scene import StageScene
-from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals.server import RecordedViser
 from hexapods.shows.stage_frame import Ghost, LaneFrame, SceneSpec
-from tests.viewer.drawing import frame_at_rest, frame_of, race_of, scene_nodes
+from tests.drawing.drawn_scene import frame_at_rest, frame_of, race_of, scene_nodes
 
 Look = tuple[tuple[int, int, int], float]
 """Colour of a link and its scale."""
@@ -24,7 +24,7 @@ def lane_in(spec: SceneSpec, *disturbances: Disturbance) -> LaneFrame:
 
 
 def looks(
-    server: InProcessViser, spec: SceneSpec, lane: int = 0, root: str = "robots"
+    server: RecordedViser, spec: SceneSpec, lane: int = 0, root: str = "robots"
 ) -> dict[int, list[Look]]:
     """Return the looks of the parts of each leg of a lane's robot; leg 0 is the torso."""
     nodes, by_leg = scene_nodes(server), dict[int, list[Look]]()
@@ -44,7 +44,7 @@ def looks(
     return by_leg
 
 
-def torsos(server: InProcessViser) -> dict[str, Any]:
+def torsos(server: RecordedViser) -> dict[str, Any]:
     """Return the properties of the first batch of the robots."""
     node: dict[str, Any] = scene_nodes(server)["/world/run/robots/0/torso"]
     return node
@@ -63,7 +63,7 @@ def test_batches_are_named_by_whose_links_their_instances_are() -> None:
     assert any("/legs-1-2-3-4-5-6" in name for name in names)
 
 
-def test_limp_leg_is_grey_and_a_lost_one_is_not_drawn(server: InProcessViser) -> None:
+def test_limp_leg_is_grey_and_a_lost_one_is_not_drawn(server: RecordedViser) -> None:
     spec, scene = race_of(2), StageScene(server)
     whole = lane_in(spec)
     scene.draw(frame_of(spec, whole, whole))
@@ -83,7 +83,7 @@ def test_limp_leg_is_grey_and_a_lost_one_is_not_drawn(server: InProcessViser) ->
 
 
 def test_weaker_legs_are_greyer_and_only_the_link_of_a_stuck_joint_is_red(
-    server: InProcessViser,
+    server: RecordedViser,
 ) -> None:
     spec, scene = race_of(1), StageScene(server)
     scene.draw(frame_of(spec, lane_in(spec)))
@@ -101,14 +101,14 @@ def test_weaker_legs_are_greyer_and_only_the_link_of_a_stuck_joint_is_red(
     assert changed[0][0] > 3 * max(changed[0][1:])
 
 
-def test_scene_without_disturbances_sends_no_scales(server: InProcessViser) -> None:
+def test_scene_without_disturbances_sends_no_scales(server: RecordedViser) -> None:
     spec = race_of(1)
     StageScene(server).draw(frame_of(spec, lane_in(spec)))
 
     assert torsos(server)["batched_scales"] is None
 
 
-def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> None:
+def test_original_is_a_ghost_on_the_lane_of_the_fork(server: RecordedViser) -> None:
     spec, scene = race_of(2), StageScene(server)
     lane = lane_in(spec)
     ahead = lane.qpos.copy()
@@ -131,7 +131,7 @@ def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> 
     assert {scale for leg in other.values() for _, scale in leg} == {0.0}, "that lane has none"
 
 
-def test_ghost_of_an_evaluation_has_the_legs_of_its_time(server: InProcessViser) -> None:
+def test_ghost_of_an_evaluation_has_the_legs_of_its_time(server: RecordedViser) -> None:
     spec = replace(race_of(1), kind="training")
     ghost, scene = Ghost(50, 0.1), StageScene(server)
 

@@ -1,4 +1,4 @@
-"""The stage drawn in a real viser, checked by the scene graph that a client receives."""
+"""The stage drawn in a real viser, checked by the scene nodes that are there."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -6,19 +6,18 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.viewer.update_cost import measure_stage_update
 from hexapods.domain.disturbances import Lost
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.robot import Robot, ring
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import StageScene
-from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals.server import RecordedViser
 from hexapods.runs.clocks import FINISH_LINE_M
 from hexapods.runs.config import training_config
 from hexapods.shows.scene_spec import idle_scene, rest_pose, training_scene
 from hexapods.shows.stage_frame import ActionValuesView, Ghost, LaneFrame, SceneSpec
-from tests.viewer.drawing import GAIT, frame_at_rest, race_of, scene_nodes
+from tests.drawing.drawn_scene import GAIT, frame_at_rest, race_of, scene_nodes
 
 
 def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
@@ -27,14 +26,14 @@ def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> Acti
     return ActionValuesView(values, np.ones_like(values), current, None, -0.01, 0.06)
 
 
-def robot_batches(server: InProcessViser) -> set[str]:
+def robot_batches(server: RecordedViser) -> set[str]:
     """Return the names of the scene nodes that draw the robots."""
     nodes = scene_nodes(server).items()
     return {name for name, node in nodes if "/robots" in name and "batched_positions" in node}
 
 
 def test_number_of_robot_nodes_does_not_depend_on_the_lanes(
-    server: InProcessViser,
+    server: RecordedViser,
 ) -> None:
     StageScene(server).draw(frame_at_rest(race_of(3)))
     three = robot_batches(server)
@@ -65,7 +64,7 @@ def test_robot_with_any_number_of_legs_follows_its_pose(legs: int) -> None:
         assert part.shape.faces.max() < len(part.shape.vertices)
 
 
-def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> None:
+def test_lanes_are_side_by_side_with_their_labels(server: RecordedViser) -> None:
     spec = race_of(3)
     scene = StageScene(server)
     scene.draw(frame_at_rest(spec))
@@ -79,7 +78,7 @@ def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> Non
     assert labels == [f"{lane_spec.name}\n0.00\u00a0m, step 3" for lane_spec in spec.lane_specs]
 
 
-def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser) -> None:
+def test_start_and_finish_lines_are_labelled_and_coloured(server: RecordedViser) -> None:
     StageScene(server).draw(frame_at_rest(race_of(1)))
     nodes = scene_nodes(server)
     labels = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
@@ -93,7 +92,7 @@ def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser
     assert nodes["/world/run/track/finish/word"]["position"][1] > 0.1
 
 
-def test_follow_point_of_the_leader_moves_smoothly(server: InProcessViser) -> None:
+def test_follow_point_of_the_leader_moves_smoothly(server: RecordedViser) -> None:
     spec, scene = race_of(2), StageScene(server)
     ahead = rest_pose(spec).copy()
     ahead[1] = 0.4
@@ -112,7 +111,7 @@ def test_follow_point_of_the_leader_moves_smoothly(server: InProcessViser) -> No
     assert ys[-1] == pytest.approx(0.4, abs=0.01)
 
 
-def test_unchanged_frame_sends_no_messages(server: InProcessViser) -> None:
+def test_unchanged_frame_sends_no_messages(server: RecordedViser) -> None:
     scene, frame = StageScene(server), frame_at_rest(race_of(3))
     serializer = server.get_scene_serializer()
     assert scene.draw(frame, now=0.0)
@@ -122,7 +121,7 @@ def test_unchanged_frame_sends_no_messages(server: InProcessViser) -> None:
     assert len(serializer._messages) == once
 
 
-def test_change_of_scene_removes_all_old_nodes(server: InProcessViser) -> None:
+def test_change_of_scene_removes_all_old_nodes(server: RecordedViser) -> None:
     scene = StageScene(server)
     practice = training_scene(training_config(gait=GAIT, divisions=3))
     ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
@@ -143,7 +142,7 @@ def test_change_of_scene_removes_all_old_nodes(server: InProcessViser) -> None:
     assert len(nodes) < 40
 
 
-def test_robots_of_consecutive_scenes_share_no_node(server: InProcessViser) -> None:
+def test_robots_of_consecutive_scenes_share_no_node(server: RecordedViser) -> None:
     """A node that returns in the same window keeps the buffers of its batched meshes."""
     scene = StageScene(server)
     drawn: list[set[str]] = []
@@ -158,7 +157,7 @@ def test_robots_of_consecutive_scenes_share_no_node(server: InProcessViser) -> N
 
 
 def test_cells_are_coloured_by_value_but_for_the_current_one(
-    server: InProcessViser,
+    server: RecordedViser,
 ) -> None:
     spec, scene = race_of(1), StageScene(server)
     lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
@@ -174,7 +173,7 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
     assert present.max() < 20
 
 
-def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProcessViser) -> None:
+def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: RecordedViser) -> None:
     spec, scene = race_of(1), StageScene(server)
     values = action_values(spec)
     values.visits[2, 3:] = 0
@@ -188,7 +187,7 @@ def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProces
     assert is_grey.tolist() == [False, True, True, True], "the present cell, and two of three"
 
 
-def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) -> None:
+def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: RecordedViser) -> None:
     spec, scene = race_of(1), StageScene(server)
 
     def sizes(world: World) -> list[bool]:
@@ -206,7 +205,7 @@ def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) ->
 
 
 @pytest.mark.parametrize("divisions", [2, 3, 8])
-def test_grids_of_all_sizes_can_be_drawn(server: InProcessViser, divisions: int) -> None:
+def test_grids_of_all_sizes_can_be_drawn(server: RecordedViser, divisions: int) -> None:
     spec = replace(race_of(1), grid=FootGrid(0.04, divisions))
     lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
 
@@ -215,7 +214,7 @@ def test_grids_of_all_sizes_can_be_drawn(server: InProcessViser, divisions: int)
     assert sum(name.endswith("/fills") for name in scene_nodes(server)) == 2
 
 
-def test_photo_finish_shows_distances_and_is_removed(server: InProcessViser) -> None:
+def test_photo_finish_shows_distances_and_is_removed(server: RecordedViser) -> None:
     spec, scene = race_of(2), StageScene(server)
     far = replace(frame_at_rest(spec).lanes[0], distance_m=0.375, rank=1)
     frame = replace(frame_at_rest(spec), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
@@ -228,7 +227,7 @@ def test_photo_finish_shows_distances_and_is_removed(server: InProcessViser) -> 
     assert not [name for name in scene_nodes(server) if "/photo" in name]
 
 
-def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> None:
+def test_photo_finish_is_redrawn_under_another_clock(server: RecordedViser) -> None:
     scene, frame = StageScene(server), frame_at_rest(race_of(3))
     scene.draw(replace(frame, phase="photo-finish"))
     retimed = tuple(replace(lane, distance_m=0.25, rank=2) for lane in frame.lanes)
@@ -238,7 +237,7 @@ def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> 
     assert texts == ["2.  0.25\u00a0m"] * 3
 
 
-def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) -> None:
+def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: RecordedViser) -> None:
     spec, scene = race_of(1), StageScene(server)
     frame = frame_at_rest(spec)
     scene.draw(frame)
@@ -249,10 +248,3 @@ def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) 
     shown = scene_nodes(server)["/world/run/lane0/flag"]
     assert shown["visible"]
     assert shown["position"][1] == pytest.approx(FINISH_LINE_M)
-
-
-def test_update_of_three_walking_robots_is_small() -> None:
-    elapsed_ms, size = measure_stage_update(updates=30)
-
-    assert elapsed_ms > 0
-    assert 500 < size <= 4096

@@ -1,32 +1,32 @@
 """Two stages in one process, each at a path of its own: neither touches the other.
 
-By a server with races of MuJoCo, and a viser of each stage.
+By a server with races of MuJoCo.
 """
 
 import asyncio
-import json
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager
 from typing import Any, NamedTuple
 
 import httpx2
 import pytest
 
-from app.limits.client_slots import ClientSlots
+from app.stage.playback import Replays
 from app.stage.roles import Roles
+from app.viewer.replay_frames import ReplayFrames
 from app.viewer.shared_stage import SharedStage
-from hexapods.drawing.viser_internals import stream
+from tests.event_streams import EventStream, open_stream
 from tests.stage.stage_parts import StageParts
 from tests.stage.two_stages import SECOND, TOKENS, two_stages
 from tests.timeouts import LONG_S, ProgressTimeout
-from tests.viewer.serving import Viewer
 
 
 class Client:
     """A client of one stage, which it names by its path."""
 
     def __init__(self, port: int, path: str) -> None:
-        self.path, self.socket = path, f"ws://127.0.0.1:{port}{path}/viewer/"
+        self.path = path
         self.http = httpx2.Client(
             base_url=f"http://127.0.0.1:{port}{path}",
             timeout=LONG_S,
@@ -62,64 +62,9 @@ class Client:
             stall_check.check(run)
         return str(run["id"])
 
-    @contextmanager
-    def events(self) -> Iterator["Events"]:
-        with self.http.stream("GET", "/api/v1/events") as response:
-            yield Events(response.iter_lines())
-
-
-class Events:
-    """A stream of events."""
-
-    def __init__(self, lines: Iterator[str]) -> None:
-        self._lines = lines
-
-    def until(self, wanted: str, **fields: Any) -> list[tuple[str, Any]]:
-        """Return the events up to the first of this name whose data has these fields."""
-        events: list[tuple[str, Any]] = []
-        name = ""
-        for line in self._lines:
-            field, _, value = line.partition(": ")
-            if field == "event":
-                name = value
-            elif field == "data":
-                events.append((name, json.loads(value)))
-                if name == wanted and fields.items() <= events[-1][1].items():
-                    return events
-        raise AssertionError(events)
-
-
-class Lanes:
-    """The lanes that a viewer sees."""
-
-    def __init__(self, viewer: Viewer) -> None:
-        self.viewer, self.names = viewer, set[str]()
-
-    def see(self, count: int) -> None:
-        """Read frames until there are so many lanes, with their robots."""
-        self.read()
-        while len(self.names) != count:
-            self.read()
-
-    def read(self, timeout_s: float = LONG_S) -> None:
-        """Read a frame.
-
-        Raises:
-            TimeoutError: if none comes.
-        """
-        frame = stream.parse(self.viewer.socket.recv(timeout_s, decode=False))
-        for message in frame.messages:
-            name = str(message.get("name", ""))
-            if message["type"] == "RemoveSceneNodeMessage":
-                self.names.discard(name)
-            elif message["type"] == "LabelMessage" and name.startswith("/world/run/lane"):
-                self.names.add(name)
-
-    def rest(self) -> None:
-        """Read all frames until none comes for half a second."""
-        with suppress(TimeoutError):
-            while True:
-                self.read(0.5)
+    def events(self) -> AbstractContextManager[EventStream]:
+        """Watch the stage."""
+        return open_stream(self.http)
 
 
 class TwoStages(NamedTuple):
@@ -141,40 +86,31 @@ def stages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TwoStages]:
 def test_each_stage_has_its_show_its_pause_its_events_and_its_viewers(stages: TwoStages) -> None:
     first, second, duel, solo = stages
     with first.events() as stream, second.events() as other_stream:
-        assert stream.until("snapshot")[0][1]["role"] == "operator"
-        other_stream.until("snapshot")
+        for snapshot in stream.next(), other_stream.next():
+            assert (snapshot.name, snapshot.data["role"]) == ("snapshot", "operator")
+            assert snapshot.data["viewers"] == 1
         first.put(run_id=duel, speed=0.25, time_s=0.0)
         second.put(run_id=solo, speed=0.5, time_s=0.0)
-        with Viewer(first.socket) as viewer, Viewer(second.socket) as other_viewer:
-            lanes, other_lanes = Lanes(viewer), Lanes(other_viewer)
-            lanes.see(2)
-            other_lanes.see(1)
+        assert set(stream.frames(run_id=duel)[0]["follow"]) == {"leader", "1", "2"}
+        assert set(other_stream.frames(run_id=solo)[0]["follow"]) == {"leader", "1"}
 
-            second.put(playing=False)
-            other_lanes.rest()
-            paused, playing = second.stage(), first.stage()
-            for _ in range(20):
-                lanes.read()
-            assert (paused["run_id"], paused["playing"]) == (solo, False)
-            assert (playing["run_id"], playing["playing"], playing["speed"]) == (duel, True, 0.25)
-            assert second.stage()["time_s"] == paused["time_s"]
-            assert first.stage()["time_s"] > playing["time_s"]
-            assert (len(lanes.names), len(other_lanes.names)) == (2, 1)
+        second.put(playing=False)
+        paused, playing = second.stage(), first.stage()
+        time.sleep(0.3)
+        assert (paused["run_id"], paused["playing"]) == (solo, False)
+        assert (playing["run_id"], playing["playing"], playing["speed"]) == (duel, True, 0.25)
+        assert second.stage()["time_s"] == paused["time_s"]
+        assert first.stage()["time_s"] > playing["time_s"]
         first.put(speed=4)
         second.put(speed=2)
         events = stream.until("stage", speed=4)
         other_events = other_stream.until("stage", speed=2)
 
-    for events_of_one, run_id in ((events, duel), (other_events, solo)):
-        shown = [
-            (name, data["run_id"]) for name, data in events_of_one if name in ("stage", "scene")
-        ]
-        # A frame of the run before may be published after the command.
-        started = shown.index(("scene", run_id))
-        assert {scene_run for _, scene_run in shown[started:]} == {run_id}
-        assert max(data["count"] for name, data in events_of_one if name == "viewers") == 1
-    assert all(data["playing"] for name, data in events if name == "stage")
-    assert not all(data["playing"] for name, data in other_events if name == "stage")
+    for events_of_stage, run_id in ((events, duel), (other_events, solo)):
+        shown = {data["run_id"] for name, data, _ in events_of_stage if name in ("stage", "piece")}
+        assert shown == {run_id}
+    assert all(data["playing"] for name, data, _ in events if name == "stage")
+    assert not all(data["playing"] for name, data, _ in other_events if name == "stage")
 
 
 def test_events_of_a_run_reach_both_stages(stages: TwoStages) -> None:
@@ -219,8 +155,8 @@ def test_stage_that_is_closed_ends_its_events_and_leaves_the_other(parts: StageP
             parts.store,
             parts.recordings,
             parts.bus,
+            frames=ReplayFrames(Replays(parts.store, parts.recordings)),
             roles=Roles(None),
-            viewer_slots=ClientSlots(9, 9),
             path=path,
         )
 
@@ -231,7 +167,7 @@ def test_stage_that_is_closed_ends_its_events_and_leaves_the_other(parts: StageP
             first.stage.set(playing=False)
             second.stage.set(playing=False)
             for subscription in ended, second.channel.subscribe():
-                assert {event.event async for event in subscription} <= {"scene"}
+                assert [event.event async for event in subscription] == []
             async for event in subscribed:
                 if event.event == "stage":
                     break

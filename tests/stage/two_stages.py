@@ -5,13 +5,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from app.api.deps import Services
-from app.limits.client_slots import ClientSlots
 from app.server import create_app
 from app.settings import Settings
+from app.stage.playback import Replays
 from app.stage.roles import Roles
 from app.storage.database.opening import open_store
+from app.viewer.replay_frames import ReplayFrames
 from app.viewer.shared_stage import SharedStage
-from tests.viewer.serving import running
+from tests.running_app import running
 
 SECOND = "/r/second"
 TOKENS = {"": "a-token-for-tests", SECOND: "another-token-for-tests"}
@@ -29,8 +30,8 @@ def two_stages(data: Path) -> Iterator[int]:
             store,
             services.recordings,
             services.bus,
+            frames=ReplayFrames(Replays(store, services.recordings)),
             roles=Roles(TOKENS[SECOND]),
-            viewer_slots=ClientSlots(9, 9),
             path=SECOND,
             members=services.features.stage_members(),
         )

@@ -1,125 +1,95 @@
-"""The page in a real browser, in an iframe of a dashboard, with a real server and a real viser."""
+"""The viewer in a real browser, in a frame of a page that draws in it, with a real server."""
 
-import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, FloatRect, Frame, Page
-from starlette.responses import HTMLResponse
-from starlette.routing import Route
+from playwright.sync_api import Browser, FloatRect, Frame, Page
 
-from app.limits.client_slots import ClientSlots
-from app.viewer.hub import Hub
-from hexapods.drawing.track import Position
-from hexapods.drawing.viser_internals import stream
-from hexapods.drawing.viser_internals.server import InProcessViser
-from tests.conftest import new_page
-from tests.viewer.serving import ServedHub, Upstream, serving, start_viser, wait_until
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.viser_internals.recorder import recorder
+from hexapods.drawing.viser_internals.server import RecordedViser, recorded_viser
+from tests.drawing.drawn_scene import frame_at_rest, race_of
+from tests.drawing.test_scene import action_values
+from tests.running_app import wait_until
+from tests.viewer.viewer_host import draw, hosted_viewer, open_host, wait_for_node
 
-DASHBOARD = """
-<!doctype html>
-<script>
-  window.heard = [];
-  addEventListener("message", ({ data }) => heard.push(data));
-  const show = (wanted) =>
-    document.querySelector("iframe").contentWindow
-      .postMessage({ type: "hexapods:show", ...wanted }, location.origin);
-</script>
-<iframe src="viewer/?view=1&theme=dark" width="480" height="270"></iframe>
-"""
+FILLS = "/world/run/lane0/grid/others/fills"
 
-POSITIONS: dict[str, Position] = {"1": (1.0, 0.5, 0.0), "2": (2.0, 0.0, 0.0)}
+CELL_PLACE = """([name, instance]) => {
+    const { camera, canvas, nodeRefFromName } = window.__viserMutable;
+    const { batched_positions } = window.__viserSceneTree.getState()[name].message.props;
+    const { buffer, byteOffset, byteLength } = batched_positions;
+    const floats = new Float32Array(buffer.slice(byteOffset, byteOffset + byteLength));
+    const [x, y, z] = floats.slice(3 * instance, 3 * instance + 3);
+    const { matrixWorld } = nodeRefFromName[name.slice(0, name.lastIndexOf("/"))];
+    const at = camera.position.clone().set(x, y, z).applyMatrix4(matrixWorld).project(camera);
+    return [((at.x + 1) / 2) * canvas.clientWidth, ((1 - at.y) / 2) * canvas.clientHeight];
+}"""
+"""Returns where an instance of a batch is in the picture [px]."""
 
 
-class Scene:
-    """viser's scene with one box, and its stream to a hub."""
+class Stage:
+    """A host of the viewer, and the viser server of which it draws what is drawn there."""
 
-    def __init__(self, viser_server: InProcessViser) -> None:
-        self.viser_server = viser_server
-        self.upstream = Upstream(viser_server)
-        self.set_box(2)
+    def __init__(self, page: Page, viewer: Frame, server: RecordedViser, recording: Any) -> None:
+        self.page, self.viewer, self.server = page, viewer, server
+        self._recording = recording
+
+    def update(self) -> None:
+        """Draw in the viewer what has changed on the server."""
+        draw(self.page, self._recording.take())
 
     def set_box(self, side: float) -> None:
         dimensions = (side, side, side)
-        self.viser_server.scene.add_box("/world/box", color=(255, 255, 255), dimensions=dimensions)
+        self.server.scene.add_box("/world/box", color=(255, 255, 255), dimensions=dimensions)
+        self.update()
 
+    def show(self, **wanted: Any) -> None:
+        self.page.evaluate("wanted => show(wanted)", wanted)
 
-@contextmanager
-def serving_scene(scene: Scene) -> Iterator[ServedHub]:
-    more_routes = [
-        Route("/", lambda _: HTMLResponse(DASHBOARD)),
-        Route("/empty", lambda _: HTMLResponse("<!doctype html><iframe></iframe>")),
-    ]
-    hub = Hub(scene.upstream.frames, follow_position=POSITIONS.get)
-    with serving(hub, more_routes=more_routes) as served:
-        yield served
-
-
-@pytest.fixture
-def served(viser_server: InProcessViser) -> Iterator[ServedHub]:
-    with serving_scene(Scene(viser_server)) as served:
-        yield served
+    def received(self, type_: str) -> list[dict[str, Any]]:
+        """Return the messages of the viewer to its host of a type."""
+        return [message for message in self.page.evaluate("heard") if message.get("type") == type_]
 
 
 @pytest.fixture(scope="module")
-def scene() -> Iterator[Scene]:
-    viser_server = start_viser()
-    yield Scene(viser_server)
-    viser_server.stop()
+def address() -> Iterator[str]:
+    with hosted_viewer() as address:
+        yield address
 
 
 @pytest.fixture(scope="module")
-def watched_hub(scene: Scene) -> Iterator[ServedHub]:
-    """The hub whose viewers are those of `dashboard` alone."""
-    with serving_scene(scene) as served:
-        yield served
-
-
-@pytest.fixture(scope="module")
-def shared_page(browser: Browser, watched_hub: ServedHub) -> Iterator[Page]:
-    """A dashboard with its viewer; to load viser's client takes most of the time of these tests."""
-    with browser.new_context(device_scale_factor=0.5) as context:
+def shared_stage(browser: Browser, address: str) -> Iterator[Stage]:
+    """A host with its viewer; to load viser's client takes most of the time of these tests."""
+    with (
+        recorded_viser() as server,
+        recorder(server) as recording,
+        browser.new_context(device_scale_factor=0.5) as context,
+    ):
         page = context.new_page()
-        page.goto(f"http://{watched_hub.host}/")
-        page.wait_for_function("heard.some((message) => message.status === 'connected')")
-        wait_for_node(page.frames[1], "/world/box")
-        yield page
+        viewer = open_host(page, address)
+        server.scene.add_frame("/world", show_axes=False)
+        yield Stage(page, viewer, server, recording)
 
 
 @pytest.fixture
-def dashboard(shared_page: Page, scene: Scene) -> Page:
-    """The shared page as it is at first."""
-    scene.set_box(2)
-    shared_page.evaluate("show({ view: '1', theme: 'dark', lanes: [], covered: [] })")
-    wait_until_centred_on(shared_page.frames[1], 1, 0.5)
-    shared_page.evaluate("heard.length = 0")
-    return shared_page
+def stage(shared_stage: Stage) -> Iterator[Stage]:
+    """The shared host with one box, as it is at first."""
+    shared_stage.set_box(2)
+    wait_for_node(shared_stage.viewer, "/world/box")
+    shared_stage.show(theme="dark", lanes=[], covered=[])
+    shared_stage.page.evaluate("heard.length = 0")
+    yield shared_stage
+    shared_stage.server.scene.reset()
+    shared_stage.server.scene.add_frame("/world", show_axes=False)
+    shared_stage.update()
 
 
-@pytest.fixture
-def viewer(dashboard: Page) -> Frame:
-    return dashboard.frames[1]
-
-
-def wait_for_node(frame: Frame | Page, name: str) -> None:
-    """Wait until viser's client has a scene node."""
-    frame.wait_for_function("name => window.__viserSceneTree?.getState()[name]?.message", arg=name)
-
-
-def wait_until_centred_on(frame: Frame, x: float, y: float) -> None:
-    frame.wait_for_function(
-        """([x, y]) => {
-            const [a, b] = __viserMutable.nodePoseData["/world"]?.position ?? [];
-            return a === -x && b === -y;
-        }""",
-        arg=[x, y],
-    )
-
-
-def drawn_pixels(frame: Frame | Page) -> int:
+def drawn_pixels(frame: Frame) -> int:
     """Return the number of opaque pixels of the canvas."""
     return int(
         frame.evaluate(
@@ -140,26 +110,6 @@ def drawn_pixels(frame: Frame | Page) -> int:
     )
 
 
-def received_messages(dashboard: Page, type_: str) -> list[dict[str, Any]]:
-    return [message for message in dashboard.evaluate("heard") if message.get("type") == type_]
-
-
-def socket_addresses(page: Page) -> list[str]:
-    """Return a growing list of websocket addresses, from viser's console messages.
-
-    Playwright does not report websockets of a worker.
-    """
-    addresses: list[str] = []
-    announcement = re.compile(r"Connecting to: (\S+) with protocol")
-
-    def note(message: ConsoleMessage) -> None:
-        if match := announcement.match(message.text):
-            addresses.append(match[1])
-
-    page.on("console", note)
-    return addresses
-
-
 def intersect(a: FloatRect, b: FloatRect) -> bool:
     return (
         a["x"] < b["x"] + b["width"]
@@ -169,18 +119,19 @@ def intersect(a: FloatRect, b: FloatRect) -> bool:
     )
 
 
-def test_picture_changes_with_the_scene(viewer: Frame, scene: Scene) -> None:
-    wait_until(lambda: drawn_pixels(viewer) > 0)
-    before = drawn_pixels(viewer)
+def test_picture_changes_with_what_is_drawn(stage: Stage) -> None:
+    wait_until(lambda: drawn_pixels(stage.viewer) > 0)
+    before = drawn_pixels(stage.viewer)
 
-    scene.set_box(4)
+    stage.set_box(4)
 
-    wait_until(lambda: drawn_pixels(viewer) > 2 * before)
+    wait_until(lambda: drawn_pixels(stage.viewer) > 2 * before)
 
 
 def test_only_the_scene_is_visible_in_the_theme_of_the_dashboard_which_gets_the_keys(
-    dashboard: Page, viewer: Frame
+    stage: Stage,
 ) -> None:
+    viewer = stage.viewer
     shown = viewer.evaluate(
         """() => [...document.querySelectorAll("#root *, body > *")]
             .filter((element) => element.checkVisibility() && element.innerText?.trim())
@@ -193,9 +144,9 @@ def test_only_the_scene_is_visible_in_the_theme_of_the_dashboard_which_gets_the_
     def background() -> str:
         return str(viewer.evaluate("getComputedStyle(document.documentElement).backgroundColor"))
 
-    assert background() == "rgb(11, 15, 20)"
+    wait_until(lambda: background() == "rgb(11, 15, 20)")
 
-    dashboard.evaluate("show({ theme: 'light' })")
+    stage.show(theme="light")
 
     wait_until(lambda: background() == "rgb(238, 241, 245)")
     opaque = viewer.evaluate(
@@ -209,59 +160,33 @@ def test_only_the_scene_is_visible_in_the_theme_of_the_dashboard_which_gets_the_
     )
     assert opaque == []
 
-    dashboard.locator("iframe").click()
+    stage.page.locator("iframe").click()
     for key in (" ", "r", "3", "?", "Control+y", "ArrowUp", "Shift", "Escape"):
-        dashboard.keyboard.press(key)
+        stage.page.keyboard.press(key)
 
-    dashboard.wait_for_function("heard.some((message) => message.key === 'Escape')")
-    keys = received_messages(dashboard, "hexapods:key")
+    stage.page.wait_for_function("heard.some((message) => message.key === 'Escape')")
+    keys = stage.received("hexapods:key")
     assert [message["key"] for message in keys] == [" ", "r", "3", "?", "Escape"]
     assert keys[2] == {"type": "hexapods:key", "key": "3", "code": "Digit3", "shiftKey": False}
 
 
-def test_view_changes_without_a_reload_and_survives_a_reconnection(
-    dashboard: Page, viewer: Frame, watched_hub: ServedHub, scene: Scene
-) -> None:
-    wait_until_centred_on(viewer, 1, 0.5)
-    viewer.evaluate("window.sameDocument = true")
-
-    dashboard.evaluate("show({ view: '2' })")
-
-    wait_until_centred_on(viewer, 2, 0)
-    assert viewer.evaluate("window.sameDocument")
-    assert watched_hub.hub.counters.viewers == 1
-
-    viewer.evaluate("__viserMutable.nodePoseData['/world'].position = [9, 9, 9]")
-    dashboard.evaluate("heard.length = 0")
-
-    # The hub loses viser, and then makes its viewers reconnect.
-    scene.upstream.lose()
-
-    dashboard.wait_for_function("heard.some((message) => message.status === 'connected')")
-    wait_until_centred_on(viewer, 2, 0)
-    statuses = [message["status"] for message in received_messages(dashboard, "hexapods:status")]
-    assert statuses[0] == "reconnecting"
-
-
-def test_labels_follow_the_theme_and_do_not_overlap(
-    dashboard: Page, viewer: Frame, scene: Scene
-) -> None:
-    camera = scene.viser_server.initial_camera
-    camera.position, camera.look_at = (1.0, 0.5, 6.0), (1.0, 0.5, 0.0)
+def test_labels_follow_the_theme_and_do_not_overlap(stage: Stage) -> None:
+    camera, add_label = stage.server.initial_camera, stage.server.scene.add_label
+    camera.position, camera.look_at = (0.0, 0.0, 6.0), (0.0, 0.0, 0.0)
     covered = {"left": 0, "top": 0, "right": 480, "bottom": 60}
-    dashboard.evaluate("wanted => show(wanted)", {"lanes": ["#E69F00"] * 6, "covered": [covered]})
-    add_label = scene.viser_server.scene.add_label
+    stage.show(lanes=["#E69F00"] * 6, covered=[covered])
     handles = [
         add_label(
             f"/world/lane{lane}/label",
             f"Robot {lane}\n0.10 m",
-            position=(1.0 + 0.01 * lane, 0.5, 0.0),
+            position=(0.01 * lane, 0.0, 0.0),
             anchor="bottom-center",
         )
         for lane in range(6)
     ]
-    line = add_label("/world/line", "Start", anchor="center-center")
-    labels = viewer.locator(".labels > div:not([hidden])")
+    add_label("/world/line", "Start", anchor="center-center")
+    stage.update()
+    labels = stage.viewer.locator(".labels > div:not([hidden])")
     wait_until(lambda: labels.count() >= 6)
 
     def boxes() -> list[FloatRect]:
@@ -270,118 +195,108 @@ def test_labels_follow_the_theme_and_do_not_overlap(
     # In the frame, which is 8 px inside of its page.
     wait_until(lambda: all(box["y"] >= 68 for box in boxes()))
     assert [pair for pair in combinations(boxes(), 2) if intersect(*pair)] == []
-    assert labels.first.evaluate("one => getComputedStyle(one).color") == "rgb(233, 237, 243)"
+    assert labels.first.evaluate("label => getComputedStyle(label).color") == "rgb(233, 237, 243)"
 
     handles[0].text = "Another"
+    stage.update()
     wait_until(lambda: "Another" in labels.all_inner_texts())
     handles[0].remove()
+    stage.update()
     wait_until(lambda: "Another" not in labels.all_inner_texts())
 
-    for label in (*handles[1:], line):
-        label.remove()
-    wait_until(lambda: labels.count() == 0)
+
+def test_leg_and_cell_that_are_clicked_are_told_to_the_host(stage: Stage) -> None:
+    spec = race_of(1)
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
+    stage.server.scene.remove_by_name("/world/box")
+    StageScene(stage.server).draw(replace(frame_at_rest(spec), lanes=(lane,)))
+    camera = stage.server.initial_camera
+    camera.position, camera.look_at = (0.0, -0.01, 0.8), (0.0, 0.0, 0.0)
+    stage.update()
+    wait_for_node(stage.viewer, FILLS)
+
+    stage.show(legsOf=0)
+    stage.page.wait_for_function("heard.some(({ legs }) => legs?.length === 6)")
+    feet = {leg["leg"]: leg for leg in stage.received("hexapods:legs")[-1]["legs"]}
+    assert sorted(feet) == [1, 2, 3, 4, 5, 6]
+    stage.show(legsOf=None)
+    frame = stage.page.locator("iframe")
+    frame.click(position={"x": feet[3]["x"], "y": feet[3]["y"]})
+    stage.page.wait_for_function("heard.some(({ pick }) => pick)")
+    pick = stage.received("hexapods:pick")[0]["pick"]
+    assert (pick["lane"], pick["what"], pick["leg"]) == (0, "leg", 3)
+
+    x, y = stage.viewer.evaluate(CELL_PLACE, [FILLS, 7])
+    frame.click(position={"x": x, "y": y})
+    stage.page.wait_for_function("heard.some(({ type }) => type === 'hexapods:click')")
+    click = stage.received("hexapods:click")[-1]
+    assert click == {"type": "hexapods:click", "node": FILLS, "instance": 7}
 
 
-def test_page_of_another_version_reloads_once(
-    page: Page, served: ServedHub, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    loads: list[str] = []
-    page.on("load", lambda loaded: loads.append(loaded.url))
-    attempts = socket_addresses(page)
-    wait_until(lambda: served.hub.live)
-    monkeypatch.setattr(stream, "SUBPROTOCOL", "viser-v999")
-
-    page.goto(served.page)
-    while len(loads) < 2 or len(attempts) < 4:
-        page.wait_for_timeout(10)
-
-    assert len(loads) == 2
-
-
-@pytest.mark.parametrize(("places", "share", "status"), [(0, 5, "full"), (5, 0, "address full")])
-def test_refusal_is_reported_to_the_dashboard(
-    page: Page, viser_server: InProcessViser, places: int, share: int, status: str
-) -> None:
-    root = Route("/", lambda _: HTMLResponse(DASHBOARD))
-    hub = Hub(viser_server.frames, slots=ClientSlots(places, share))
-    with serving(hub, more_routes=[root]) as served:
-        page.goto(f"http://{served.host}/")
-
-        page.wait_for_function(f"heard.some((message) => message.status === '{status}')")
-
-
-def test_foreign_pages_cannot_embed_the_viewer(served: ServedHub, browser: Browser) -> None:
+def test_foreign_pages_cannot_embed_the_viewer(address: str, browser: Browser) -> None:
     # The same server under another host name is another origin.
+    foreign_address = f"http://localhost:{urlsplit(address).port}"
     with browser.new_context() as context:
         foreign = context.new_page()
-        foreign.goto(f"http://{served.host}/empty")
+        foreign.goto(f"{address}/empty")
         with foreign.expect_event("console", lambda said: "frame-ancestors" in said.text):
             foreign.evaluate(
                 "address => { document.querySelector('iframe').src = address; }",
-                f"http://localhost:{served.port}/viewer/",
+                f"{foreign_address}/viewer/",
             )
-        assert served.hub.counters.viewers == 0
 
 
-def test_messages_of_foreign_pages_are_ignored(page: Page, served: ServedHub) -> None:
-    page.goto(f"http://{served.host}/empty")
-    with page.expect_popup() as opening:
-        page.evaluate(f"window.other = open('http://localhost:{served.port}/viewer/?view=2')")
-    other = opening.value
-    wait_for_node(other, "/world/box")
-    page.evaluate("other.postMessage({ type: 'hexapods:show', theme: 'light' }, '*')")
-    # Messages arrive in order, so once this one has arrived, so has the other.
-    other.evaluate("addEventListener('message', () => { window.told = true; })")
-    page.evaluate("other.postMessage(0, '*')")
-    # Its content policy forbids the evaluation by which `wait_for_function` polls.
-    wait_until(lambda: other.evaluate("window.told === true"))
+def test_messages_of_other_pages_are_ignored(stage: Stage, address: str) -> None:
+    port = urlsplit(address).port
+    for other_address in (address, f"http://localhost:{port}"):
+        with stage.page.expect_popup() as opening:
+            stage.page.evaluate("address => open(address)", f"{other_address}/empty")
+        other = opening.value
+        other.wait_for_load_state()
+        other.evaluate("opener.frames[0].postMessage({type: 'hexapods:show', theme: 'light'}, '*')")
+        other.close()
+    # Messages arrive in order, so once this one has arrived, so have the others.
+    stage.show(isProjected=True)
+    root = stage.viewer.locator("html")
+    wait_until(lambda: root.get_attribute("data-projected") is not None)
 
-    assert other.evaluate("document.documentElement.dataset.theme") is None
+    assert root.get_attribute("data-theme") == "dark"
+    stage.show(isProjected=False)
 
 
-def test_all_requests_go_to_the_own_origin(page: Page, served: ServedHub) -> None:
+def test_viewer_that_is_opened_by_itself_goes_to_the_page(page: Page, address: str) -> None:
+    page.goto(f"{address}/viewer/?view=2")
+
+    page.wait_for_url(f"{address}/")
+
+
+def test_viewer_has_no_socket_and_requests_nothing_of_other_servers(
+    page: Page, address: str
+) -> None:
     requested: list[str] = []
     errors: list[str] = []
+    said: list[str] = []
     page.on("request", lambda request: requested.append(request.url))
-    sockets = socket_addresses(page)
     page.on("pageerror", lambda error: errors.append(str(error)))
+    # Playwright does not report websockets of a worker; viser's client announces them.
+    page.on("console", lambda message: said.append(message.text))
+    hostile = "websocket=ws://evil.example&playbackPath=https://evil.example/x"
+    page.route(
+        f"{address}/",
+        lambda route, request: route.fulfill(
+            response=(response := route.fetch()),
+            body=response.text().replace("viewer/?", f"viewer/?{hostile}&"),
+        ),
+    )
 
-    page.goto(f"{served.page}?websocket=ws://evil.example&playbackPath=https://evil.example/x")
-    wait_for_node(page, "/world/box")
+    viewer = open_host(page, address)
+    with recorded_viser() as server, recorder(server) as recording:
+        server.scene.add_box("/world/box", dimensions=(1, 1, 1))
+        draw(page, recording.take())
+    wait_for_node(viewer, "/world/box")
 
-    own_addresses = (f"http://{served.host}/", f"blob:http://{served.host}/", "data:")
+    assert "evil" not in viewer.url
+    own_addresses = (f"{address}/", f"blob:{address}/", "data:")
     assert [url for url in requested if not url.startswith(own_addresses)] == []
-    assert sockets == [f"ws://{served.host}/viewer/?view=leader"]
+    assert [text for text in said if "Connecting to" in text] == []
     assert errors == []
-    page.reload()
-    wait_for_node(page, "/world/box")
-
-
-def test_an_attempt_to_connect_is_not_given_up_for_the_next_one(
-    flat_browser: Browser, served: ServedHub
-) -> None:
-    """After a long outage browsers begin each attempt later than the client would begin anew."""
-    script = """async () => {
-      const lines = `const got = [];
-        onmessage = ({ data: { type } }) => {
-          if (type === "fail") postMessage({ type: "closed" });
-          else if (type === "tell") postMessage({ type: "got", got });
-          else got.push(type);
-        };`;
-      const worker = new Worker(URL.createObjectURL(new Blob([lines])));
-      const answer = () => new Promise((resolve) => {
-        worker.addEventListener("message", ({ data }) => resolve(data), { once: true });
-      });
-      const post = (...types) => types.forEach((type) => worker.postMessage({ type }));
-      post("set_server", "retry", "retry", "fail");
-      await answer();
-      post("retry", "retry", "tell");
-      return (await answer()).got;
-    }"""
-    with new_page(flat_browser) as page:
-        page.goto(served.page)
-        # The page itself may say meanwhile which stage it follows.
-        attempts = [
-            message_type for message_type in page.evaluate(script) if message_type != "send"
-        ]
-        assert attempts == ["set_server", "retry"]

@@ -10,7 +10,7 @@ from viser import _messages
 from viser.infra import Message as ViserMessage
 from viser.infra import StateSerializer
 
-from hexapods.drawing.viser_internals.stream import BLOCKED_TYPES, Message
+from hexapods.drawing.viser_internals.messages import BLOCKED_TYPES, Message
 
 
 class Recorded(NamedTuple):

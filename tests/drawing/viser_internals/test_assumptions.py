@@ -7,7 +7,6 @@ that lacks them. Facts of the browser's side are looked up in the client's minif
 from __future__ import annotations
 
 import ast
-import asyncio
 import dataclasses
 import inspect
 import re
@@ -26,7 +25,7 @@ from hexapods import assets
 from hexapods.drawing import viser_internals
 
 if TYPE_CHECKING:
-    from hexapods.drawing.viser_internals.server import InProcessViser
+    from hexapods.drawing.viser_internals.server import RecordedViser
 
 PACKAGE = Path(viser.__file__).parent
 BUILD = PACKAGE / "client" / "build"
@@ -64,42 +63,6 @@ PIXELS = """async () => {
         [...copy.getImageData(x * canvas.width, canvas.height / 2, 1, 1).data]);
 }"""
 """Reads the pixels (red, green, blue, alpha) in the middle of the left and of the right half."""
-
-
-class Sink:
-    """Has what the producer may use of a websocket: nothing but `send`."""
-
-    __slots__ = ("frames",)
-
-    def __init__(self) -> None:
-        self.frames = asyncio.Queue[bytes]()
-
-    async def send(self, frame: bytes) -> None:
-        self.frames.put_nowait(frame)
-
-
-def produce(*messages: Any, marker: Any = None, after: Any = None) -> list[bytes]:
-    """Return the frames that the producer sends for messages, a marker, and one message later."""
-    from viser.infra import _infra
-    from viser.infra._async_message_buffer import AsyncMessageBuffer
-
-    async def run() -> list[bytes]:
-        buffer = AsyncMessageBuffer(asyncio.get_running_loop(), persistent_messages=True)
-        for message in messages:
-            buffer.push(message)
-        sink = Sink()
-        producing = asyncio.create_task(
-            _infra._message_producer(sink, buffer, 0, backlog_done_message=marker)  # type: ignore[arg-type]
-        )
-        frames = [await sink.frames.get()]
-        if after is not None:
-            buffer.push(after)
-            frames.append(await sink.frames.get())
-        buffer.set_done()
-        await producing
-        return frames
-
-    return asyncio.run(asyncio.wait_for(run(), 10))
 
 
 def update(node: str, **properties: object) -> Any:
@@ -226,28 +189,6 @@ def test_worker_owns_the_socket() -> None:
     }
 
 
-def test_producer_needs_only_send() -> None:
-    assert len(produce(update("/a", text="b"))) == 1
-
-
-def test_backlog_precedes_its_marker(listening: viser.ViserServer) -> None:
-    from viser import _messages
-
-    from hexapods.drawing.viser_internals import stream
-
-    nodes = [update(f"/{number}", text="") for number in range(30)]
-    frames = produce(*nodes, marker=_messages.ReplayDoneMessage(), after=update("/later", text=""))
-    types = [message["type"] for raw in frames for message in stream.parse(raw).messages]
-    updates = ["SceneNodeUpdateMessage"]
-    assert types == [*updates * 30, stream.REPLAY_DONE, *updates]
-
-    assert type(listening._websock_server._backlog_done_message) is _messages.ReplayDoneMessage
-    listening.scene.add_frame("/gone").remove()
-    listening._run_garbage_collector()
-    backlog = listening._websock_server.get_message_buffer().message_from_id.values()
-    assert "remove" not in {message.lifecycle_phase for message in backlog}
-
-
 def test_tunnel_has_one_entrance() -> None:
     source = inspect.getsource(sys.modules[viser.ViserServer.__module__])
 
@@ -264,48 +205,36 @@ def test_prints_go_through_rich(
     assert capfd.readouterr() == ("", "")
 
 
-# ---- assumed by stream
+# ---- assumed by messages
 
 
-def test_closed_loops_wake_nothing() -> None:
+def test_closed_loops_wake_nothing(listening: viser.ViserServer) -> None:
     from hexapods.drawing.viser_internals.recorder import recorder
-    from hexapods.drawing.viser_internals.server import in_process_viser, recorded_viser
+    from hexapods.drawing.viser_internals.server import recorded_viser
 
     taken = []
-    for running in (recorded_viser, in_process_viser):
-        with running() as server, recorder(server) as recording:
-            with server.atomic():
-                draw_twice(server)
-            server.flush()
-            messages, arrays = recording.take()
+    with recorded_viser() as server:
+        assert server._websock_server._server_thread is None
+        for drawing in (server, listening):
+            with recorder(drawing) as recording:
+                with drawing.atomic():
+                    draw_twice(drawing)
+                drawing.flush()
+                messages, arrays = recording.take()
             taken.append(([{**m, "uuid": "", "run_id": ""} for m in messages], list(arrays)))
-            is_threaded = server._websock_server._server_thread is not None
-            assert is_threaded == (running is in_process_viser)
     assert taken[0] == taken[1]
     assert len(taken[0][0]) > 10
 
 
-def test_types_are_looked_up(viser_server: InProcessViser) -> None:
+def test_types_are_looked_up(server: RecordedViser) -> None:
     from typing import get_type_hints
 
-    frame, other = viser_server.scene.add_frame("/a"), viser_server.scene.add_frame("/b")
-    draw_twice(viser_server)
+    frame, other = server.scene.add_frame("/a"), server.scene.add_frame("/b")
+    draw_twice(server)
 
     hints = frame._prop_hints
     assert hints == get_type_hints(type(frame._impl.props))
     assert other._prop_hints is hints, "looked up once for the class"
-
-
-def test_frame_layout() -> None:
-    from hexapods.drawing.viser_internals import stream
-
-    arrays: dict[str, Any] = {"a": np.arange(3, dtype=np.uint8), "b": np.ones((2, 3), np.float32)}
-    for raw in produce(update("/a", **arrays), update("/b", text="c")):
-        frame = stream.parse(raw)
-        assert [bytes(buffer) for buffer in frame.buffers] == [
-            array.tobytes() for array in arrays.values()
-        ]
-        assert stream.pack(frame.messages, frame.buffers, frame.timestamp_s).raw == raw
 
 
 def test_arrays_are_referenced(client: str) -> None:
@@ -314,13 +243,6 @@ def test_arrays_are_referenced(client: str) -> None:
 
     assert message["updates"] == {"number": 1, "array": {"__binary_index": 0, "dtype": "<f4"}}
     assert "`__binary_index`in" in client
-
-
-def test_version_is_the_subprotocol(client: str) -> None:
-    variable = re.search(r"`viser-v\$\{(\w+)\}`", client)
-
-    assert variable is not None
-    assert f"{variable[1]}=`{viser.__version__}`" in client
 
 
 def test_lifecycle_of_messages() -> None:
@@ -339,12 +261,26 @@ def test_lifecycle_of_messages() -> None:
     assert "owner" in _messages.FrameMessage.__dataclass_fields__
 
 
+def slot_of(message: dict[str, Any]) -> tuple[str, str]:
+    """Return the entity of a message and the key of its slot, as `static/js/replay-frames.js`."""
+    from hexapods.drawing.viser_internals.messages import LIFECYCLES
+
+    kind, phase, id_field = LIFECYCLES[message["type"]]
+    entity = message["type"]
+    if kind and id_field:
+        entity = f"{kind} {message[id_field]}"
+    elif "name" in message:
+        entity = f"scene {message['name']}"
+    if phase == "create":
+        return entity, phase
+    fields = ",".join(sorted(message["updates"])) if phase == "update_dict" else ""
+    return entity, f"{message['type']} {fields}"
+
+
 def test_redundancy_of_messages(
     listening: viser.ViserServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from viser.infra._async_message_buffer import AsyncMessageBuffer
-
-    from hexapods.drawing.viser_internals.stream import slot_of
 
     pushed: list[Any] = []
     push: Callable[..., None] = AsyncMessageBuffer.push
@@ -357,18 +293,18 @@ def test_redundancy_of_messages(
     draw(listening, 1.0)
     draw(listening, 2.0)
 
-    slots: dict[str, set[tuple[str, ...]]] = {}
+    slots: dict[str, set[tuple[str, str]]] = {}
     for message in pushed:
-        key = slot_of(message.as_serializable_dict([])).key
-        slots.setdefault(message.redundancy_key(), set()).add(key)
+        slot = slot_of(message.as_serializable_dict([]))
+        slots.setdefault(message.redundancy_key(), set()).add(slot)
     assert len(pushed) > 40
     # One slot for each of viser's keys, and no slot for two of them.
-    assert {len(keys) for keys in slots.values()} == {1}
+    assert {len(slots_of_key) for slots_of_key in slots.values()} == {1}
     assert len(set.union(*slots.values())) == len(slots)
 
 
 def test_commands_to_the_browser(client: str) -> None:
-    from hexapods.drawing.viser_internals.stream import BLOCKED_TYPES
+    from hexapods.drawing.viser_internals.messages import BLOCKED_TYPES
 
     cases = re.findall(r"case`(\w+)`:((?:(?!case`|default:).)*)", client, re.DOTALL)
     pattern = re.compile(r"sendMessage\(|Function\(|getRenderRequest=")
@@ -380,9 +316,9 @@ def test_commands_to_the_browser(client: str) -> None:
 
 def test_serializers_get_each_message() -> None:
     from hexapods.drawing.viser_internals.recorder import recorder
-    from hexapods.drawing.viser_internals.server import in_process_viser
+    from hexapods.drawing.viser_internals.server import recorded_viser
 
-    with in_process_viser() as server:
+    with recorded_viser() as server:
         frame = server.scene.add_frame("/one")
         with recorder(server) as recording:
             scene = recording.take()
@@ -396,7 +332,7 @@ def test_serializers_get_each_message() -> None:
     assert [message["name"] for message in changes.messages][:2] == ["/one", "/two"]
 
 
-def test_changes_of_an_array_are_plain(viser_server: InProcessViser) -> None:
+def test_changes_of_an_array_are_plain(server: RecordedViser) -> None:
     from viser import _messages
     from viser.infra import StateSerializer
 
@@ -405,7 +341,7 @@ def test_changes_of_an_array_are_plain(viser_server: InProcessViser) -> None:
     for value in (np.arange(6, dtype=np.float32), np.zeros((2, 3), np.uint8)):
         message = _messages.SceneNodeUpdateMessage("/a", {"batched_positions": value})
         message.owner = "someone"
-        with recorder(viser_server) as recording:
+        with recorder(server) as recording:
             recording.take()
             recording._insert_message(message)
             plain = recording.take()
@@ -416,15 +352,15 @@ def test_changes_of_an_array_are_plain(viser_server: InProcessViser) -> None:
 # ---- assumed by batches
 
 
-def test_instances_are_properties(viser_server: InProcessViser) -> None:
+def test_instances_are_properties(server: RecordedViser) -> None:
     from hexapods.drawing.viser_internals.batches import move_instances
     from hexapods.drawing.viser_internals.recorder import recorder
 
-    batch = draw_twice(viser_server)
+    batch = draw_twice(server)
     for name, size in (("batched_positions", 3), ("batched_wxyzs", 4)):
         first, second = np.random.default_rng(1).random((2, 2, size)).astype(np.float32)
         setattr(batch, name, first)
-        with recorder(viser_server) as recording:
+        with recorder(server) as recording:
             recording.take()
             setattr(batch, name, second)
             assigned = recording.take()
@@ -459,21 +395,6 @@ def test_client_is_packed() -> None:
     assert b"viser-v" in unpacked
 
 
-def test_worker_messages(client: str) -> None:
-    for snippet in (
-        "type===`send`",
-        "type===`set_server`?(e=r.server",
-        "{type:`set_server`,server:",
-        "{type:`connected`}",
-        "{type:`closed`,versionMismatch:",
-        "closeReason:t.reason",
-        "code===1002",
-        "type===`retry`",
-    ):
-        assert snippet in client
-    assert re.search(r"setTimeout\(\(\)=>\{\w+\.close\(\)\},5e3\)", client)
-
-
 def test_query_parameters(client: str) -> None:
     from app.viewer.viewer_page import ALLOWED_QUERY
 
@@ -485,11 +406,6 @@ def test_query_parameters(client: str) -> None:
     assert client.count("URLSearchParams(") == 7
 
 
-def test_reconnects_with_focus(client: str) -> None:
-    assert client.count("hasFocus") == 1
-    assert re.search(r"document\.hasFocus\(\);.{,150}\{type:`retry`\}", client)
-
-
 def test_code_from_strings(client: str) -> None:
     made_of = re.findall(r"(?<![\w$.])(?:Function|eval)\(([^)]*)\)", client)
 
@@ -499,6 +415,9 @@ def test_code_from_strings(client: str) -> None:
 
 def test_worker_connects(client: str) -> None:
     assert "{type:`set_server`,server:" in client
+    # The address is null until then, and without it there is no attempt.
+    assert client.count("new WebSocket(") == 1
+    assert "type===`set_server`?(e=r.server,a()):r.type===`retry`?e!==null&&a():" in client
     assert "s.type===`connected`" in client
     assert "s.type===`message_batch`&&" in client
     assert "ReplayDoneMessage" in client
@@ -554,15 +473,16 @@ def test_clicks_go_through_the_worker(client: str) -> None:
         assert message_type in script
 
 
-def test_batched_colors_are_linear(viser_server: InProcessViser, page: Page) -> None:
-    from app.viewer.hub import Hub
+def test_batched_colors_are_linear(server: RecordedViser, page: Page) -> None:
     from hexapods.drawing.viser_internals.client import batch_colors
-    from tests.viewer.serving import serving, wait_until
+    from hexapods.drawing.viser_internals.recorder import recorder
+    from tests.running_app import wait_until
+    from tests.viewer.viewer_host import draw, hosted_viewer, open_host, wait_for_node
 
     color = (200, 100, 50)
     corners = np.array([[0.1, -2, 0], [3, -2, 0], [3, 2, 0], [0.1, 2, 0]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-    scene, camera = viser_server.scene, viser_server.initial_camera
+    scene, camera = server.scene, server.initial_camera
     scene.set_up_direction("+y")
     scene.world_axes.visible = False
     camera.position, camera.look_at = (0.0, 0.0, 2.0), (0.0, 0.0, 0.0)
@@ -575,14 +495,13 @@ def test_batched_colors_are_linear(viser_server: InProcessViser, page: Page) -> 
         batched_wxyzs=np.array([[1.0, 0.0, 0.0, 0.0]]),
         batched_colors=batch_colors(np.array([color], np.uint8)),
     )
-    with serving(Hub(viser_server.frames)) as served:
-        page.goto(served.page)
+    with hosted_viewer() as address, recorder(server) as recording:
+        viewer = open_host(page, address)
+        draw(page, recording.take())
         for node in ("/world/left", "/world/right"):
-            page.wait_for_function(
-                "name => window.__viserSceneTree?.getState()[name]?.message", arg=node
-            )
-        wait_until(lambda: all(alpha for *_, alpha in page.evaluate(PIXELS)))
-        left, right = page.evaluate(PIXELS)
+            wait_for_node(viewer, node)
+        wait_until(lambda: all(alpha for *_, alpha in viewer.evaluate(PIXELS)))
+        left, right = viewer.evaluate(PIXELS)
 
     # The exponent 2.2 is close to sRGB's curve; unconverted, blue would be off by some 80.
     assert left == pytest.approx(right, abs=8)

@@ -12,7 +12,6 @@ import zstandard
 from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
-from app.viewer.hub import Hub
 from app.viewer.viewer_page import STAGE_SCRIPTS, ViewerPage, viewer_routes
 from hexapods import assets
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, batch_colors, content_policy
@@ -25,8 +24,7 @@ DIGITS = "!#$%()*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_abcdefghijk
 
 @pytest.fixture(scope="module")
 def client() -> TestClient:
-    routes = viewer_routes(Hub().serve)
-    return TestClient(Starlette(routes=routes), follow_redirects=False)
+    return TestClient(Starlette(routes=viewer_routes()), follow_redirects=False)
 
 
 def location(client: TestClient, path: str) -> str:

@@ -1,42 +1,44 @@
-"""Test set-up: frames of robots at rest, and the scene graph that a new client receives."""
+"""Test set-up: frames of robots at rest, and the scene nodes that are drawn."""
 
 from typing import Any
 
 import numpy as np
+import viser
 
-from app.viewer.snapshot import Snapshot
 from hexapods.domain.robot import Robot
-from hexapods.drawing.viser_internals import stream
-from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals.messages import LIFECYCLES
+from hexapods.drawing.viser_internals.recorder import recorder
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.shows.scene_spec import race_scene, rest_pose
 from hexapods.shows.stage_frame import LaneFrame, SceneSpec, StageFrame
-from tests.viewer.serving import Reader
 
 GAIT = "left-right-vertical"
 
 
-def scene_nodes(server: InProcessViser) -> dict[str, dict[str, Any]]:
-    """Return all nodes of the scene with their properties, as a new client receives them."""
-    snapshot = Snapshot()
-    with Reader(server) as reader:
-        while not snapshot.complete:
-            snapshot.apply(reader.frame())
-    frame, nodes = snapshot.pack(), dict[str, dict[str, Any]]()
-    for message in frame.messages:
-        if not message.get("name", "").startswith("/world"):
+def scene_nodes(server: viser.ViserServer) -> dict[str, dict[str, Any]]:
+    """Return all nodes of the scene with their newest properties, by name."""
+    with recorder(server) as recording:
+        messages, arrays = recording.take()
+    nodes = dict[str, dict[str, Any]]()
+    for message in messages:
+        name, (_, phase, _) = str(message.get("name", "")), LIFECYCLES[message["type"]]
+        if not name.startswith("/world"):
             continue
-        node = nodes.setdefault(message["name"], {})
+        if phase == "remove":
+            nodes = {node: nodes[node] for node in nodes if not f"{node}/".startswith(f"{name}/")}
+            continue
+        if phase == "create":
+            nodes[name] = {}
         properties = message.get("props") or message.get("updates") or message
-        node.update({name: resolved(value, frame) for name, value in properties.items()})
+        nodes[name].update({key: resolved(item, arrays) for key, item in properties.items()})
     return nodes
 
 
-def resolved(value: Any, frame: stream.Frame) -> Any:
+def resolved(value: Any, arrays: list[memoryview]) -> Any:
     """Return a property with an array reference resolved."""
     if isinstance(value, dict) and "__binary_index" in value:
-        return np.frombuffer(frame.buffers[value["__binary_index"]], value["dtype"])
+        return np.frombuffer(arrays[value["__binary_index"]], value["dtype"])
     return value
 
 
