@@ -20,8 +20,6 @@ CHECKOUT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text("utf-8"))["project"]
 OF_EXAMPLES = {"dqn", "tuning"}
 """Extras that only docs/examples need, and the product does not import."""
-NOT_IMPORTED = {"websockets"}
-"""Dependencies that another one imports: Uvicorn, to which `serve` names it."""
 
 
 class Import(NamedTuple):
@@ -100,7 +98,7 @@ def test_every_import_is_of_a_declared_dependency() -> None:
 def test_nothing_is_declared_that_is_not_imported() -> None:
     imported = {name for each in imports() for name in distributions_of(each.module)}
     declared = BASE.union(*(EXTRAS[extra] for extra in EXTRAS.keys() - OF_EXAMPLES))
-    assert declared - imported == NOT_IMPORTED
+    assert declared - imported == set()
 
 
 def test_the_modules_of_the_extras_are_those_that_are_imported() -> None:

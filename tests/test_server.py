@@ -105,7 +105,7 @@ def test_pause_and_live_changes_are_published(serve: Callable[..., Served]) -> N
     names: list[str] = []
     for name, data, _ in events:
         names.append(name)
-        assert data.get("run_id", data.get("id")) == run["id"]
+        assert name == "clock" or data.get("run_id", data.get("id")) == run["id"]
         if name == "run" and data["state"] == "paused":
             break
     assert "rates" in names
@@ -175,6 +175,17 @@ def test_request_for_a_websocket_is_answered_as_any_other(
                 assert response.status == status
                 response.read()
     assert guarded.client.get("/healthz").status_code == 200
+
+
+def test_request_for_a_websocket_is_not_logged(tmp_path: Path) -> None:
+    """uvicorn would log two warnings for each, and advise to install libraries."""
+    log = tmp_path / "log"
+    with log.open("w") as file:
+        server = Served(tmp_path / "data", file)
+        headers = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
+        assert server.client.get("/viewer/", headers=headers).status_code == 200
+        assert server.end() == 0
+    assert "pgrade" not in log.read_text()
 
 
 def test_page_and_documents_are_served(guarded: Served) -> None:

@@ -29,7 +29,7 @@ _AUTH_HINT = (
 
 
 class TokenGuard:
-    """Authentication and authorization: lets a request or websocket pass by its role and identity.
+    """Authentication and authorization: lets a request pass by its role and identity.
 
     `Roles` of the stage know operators. Without a token every client is operator; the server then
     binds to loopback only. An operator's browser has a session, whose id is in a cookie. Wrong
@@ -74,7 +74,7 @@ class TokenGuard:
             if cookie.value:
                 send = _expiring_cookie(cookie, send)
             if wait_s > 0:
-                await _too_many_guesses(scope, wait_s)(scope, receive, send)
+                await _too_many(wait_s)(scope, receive, send)
                 return
         refusal = self._refusal(scope, roles, identity) if role == "spectator" else None
         if refusal is None:
@@ -82,8 +82,6 @@ class TokenGuard:
             if role == "operator" and roles.needs_token:
                 _mark_authenticated(scope)
             await self._app(scope, receive, send)
-        elif scope["type"] == "websocket":
-            await _refuse_websocket(scope, receive, send)
         else:
             await refusal(scope, receive, send)
 
@@ -159,17 +157,8 @@ def _bearer(headers: Headers) -> str:
     return token.strip() if scheme.lower() == "bearer" else ""
 
 
-def _too_many_guesses(scope: Scope, wait_s: float) -> ASGIApp:
-    return _refuse_websocket if scope["type"] == "websocket" else _too_many(wait_s)
-
-
 def _too_many(wait_s: float) -> Response:
     return too_many("Too many wrong tokens came from this address; try again later.", wait_s)
-
-
-async def _refuse_websocket(scope: Scope, receive: Receive, send: Send) -> None:
-    del scope, receive
-    await send({"type": "websocket.close", "code": 1008, "reason": "token needed"})
 
 
 def _unauthorized(detail: str) -> Response:

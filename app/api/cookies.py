@@ -13,7 +13,7 @@ NAME = "hexapods_operator"
 
 def is_secure(scope: Scope, settings: Settings) -> bool:
     """Whether browsers reach the server over HTTPS, by itself or by the proxy that offers it."""
-    return scope["scheme"] in ("https", "wss") or (settings.public_url or "").startswith("https:")
+    return scope["scheme"] == "https" or (settings.public_url or "").startswith("https:")
 
 
 _BEGINNINGS = ("hexapods_", "__Host-hexapods_")
@@ -58,7 +58,7 @@ class SessionCookie:
         """Read the session cookie of a request.
 
         Args:
-            scope: ASGI scope of the request, or of a websocket.
+            scope: ASGI scope of the request.
             is_secure: whether browsers use HTTPS.
             path: path of the stage, or of another page with a cookie of its own.
             name: beginning of the name of the cookie.

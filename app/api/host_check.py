@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 from app.settings import Settings
 
@@ -36,15 +37,15 @@ _FORM_REQUEST = (
 )
 
 
-class HostGuard:
-    """Middleware that refuses requests and websockets with a foreign Host or Origin."""
+class HostGuard(HttpMiddleware):
+    """Middleware that refuses requests with a foreign Host or Origin."""
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         """Wrap an app; the settings list the allowed hosts and the public URL.
 
         Loopback names and IP literals are always allowed: DNS rebinding cannot use them.
         """
-        self._app = app
+        super().__init__(app)
         self._names = {*settings.allowed_hosts, settings.public_host} - {None}
         allowed_origins = [
             f"{scheme}://{name}" for name in settings.allowed_hosts for scheme in _STANDARD_PORTS
@@ -54,19 +55,11 @@ class HostGuard:
             _origin(origin) for origin in (*allowed_origins, settings.public_origin or "")
         } - {None}
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or refuse with 403."""
-        if scope["type"] not in ("http", "websocket"):
-            await self._app(scope, receive, send)
-            return
-        refusal = self._refusal(scope.get("method", "GET"), Headers(scope=scope))
-        if refusal is None:
-            await self._app(scope, receive, send)
-        elif scope["type"] == "websocket":
-            # A close before the accept makes the server respond 403.
-            await send({"type": "websocket.close", "code": 1008, "reason": "foreign"})
-        else:
-            await problem(403, refusal)(scope, receive, send)
+        refusal = self._refusal(scope["method"], Headers(scope=scope))
+        answer = self._app if refusal is None else problem(403, refusal)
+        await answer(scope, receive, send)
 
     def _refusal(self, method: str, headers: Headers) -> str | None:
         hosts, origins = headers.getlist("host"), headers.getlist("origin")

@@ -31,7 +31,7 @@ class Identity(Protocol):
         """Return the refusal of a request; None if it is allowed.
 
         Args:
-            scope: ASGI scope of the request, or of a websocket, with the parameters of its path.
+            scope: ASGI scope of the request, with the parameters of its path.
             access: access of its route.
             as_spectator: refusal that a spectator would get; None if a spectator may do it.
         """

@@ -12,7 +12,7 @@ _CONTENT_POLICY = (
 
 
 class HttpMiddleware(ABC):
-    """ASGI middleware that lets websockets and the lifespan pass.
+    """ASGI middleware that lets the lifespan pass, and no other protocol than HTTP.
 
     Not Starlette's `BaseHTTPMiddleware`, which runs the app in a task of its own, and so hides a
     client's disconnect from it.
@@ -23,7 +23,13 @@ class HttpMiddleware(ABC):
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Call the app; by way of `handle` if this is an HTTP request."""
+        """Call the app; by way of `handle` if this is an HTTP request.
+
+        Raises:
+            RuntimeError: if the server speaks a protocol, such as WebSocket, that no guard knows.
+        """
+        if scope["type"] not in ("http", "lifespan"):
+            raise RuntimeError(f"the app answers HTTP alone, not {scope['type']}")
         await (self.handle if scope["type"] == "http" else self._app)(scope, receive, send)
 
     @abstractmethod

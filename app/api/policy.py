@@ -156,7 +156,7 @@ def _policy_on(endpoint: object, path: str) -> RoutePolicy:
 
 def policy_without_route(scope: Scope) -> RoutePolicy:
     """Return the policy of a path without a route, and of a method that its route does not have."""
-    if scope["type"] == "websocket" or scope["method"] in READ_METHODS:
+    if scope["method"] in READ_METHODS:
         return RoutePolicy(access=WATCH)
     return RoutePolicy(access=OPERATOR, starts=scope["method"] == "POST")
 
@@ -258,7 +258,7 @@ class GuardedFiles(Mount):
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request that matches, if the guards let it pass."""
-        is_read = scope["type"] == "http" and scope["method"] in READ_METHODS
+        is_read = scope["method"] in READ_METHODS
         of_request = self.policy if is_read else policy_without_route(scope)
         await _guard(of_request, super().handle, scope, receive, send)
 
@@ -285,7 +285,7 @@ class _WithoutRoute:
 
     async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Redirect to the path with or without its last slash if it is a route's, as Starlette."""
-        if scope["type"] == "http" and path_of(scope) != "/":
+        if path_of(scope) != "/":
             path = scope["path"]
             other = {**scope, "path": path.rstrip("/") if path.endswith("/") else f"{path}/"}
             if any(route.matches(other)[0] is not Match.NONE for route in self._router.routes):

@@ -4,9 +4,10 @@ What reads headers, before any limit of an address, may take time by their lengt
 is no longer than `MAX_BYTES` costs little, whatever it holds, and a longer one is read by nothing.
 """
 
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Receive, Scope, Send
 
 from app.api.cookies import kept_cookies
+from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 
 READ = frozenset(
@@ -35,36 +36,26 @@ READ_BEFORE = frozenset(
     {
         "connection",
         "expect",
-        "sec-websocket-extensions",
-        "sec-websocket-key",
-        "sec-websocket-protocol",
-        "sec-websocket-version",
         "upgrade",
         "x-forwarded-for",
         "x-forwarded-proto",
     }
 )
-"""Names of those that uvicorn, h11 and websockets read before the app is called."""
+"""Names of those that uvicorn and h11 read before the app is called."""
 MAX_BYTES = 8 << 10
 """Longest header that is read, over all lines of the same name."""
 
 
-class DeclaredHeaders:
+class DeclaredHeaders(HttpMiddleware):
     """Middleware that leaves of a request's headers those in `READ`, and refuses long ones.
 
     So no code of the app reads a header that is not declared here, which promise 28 tests. The
-    cookies are parsed here, once a request.
+    cookies are parsed here, once a request. To be installed outside all middleware that reads
+    headers.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app; to be installed outside all middleware that reads headers."""
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Call the app, or refuse with 431; a websocket with 403."""
-        if scope["type"] not in ("http", "websocket"):
-            await self._app(scope, receive, send)
-            return
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Call the app, or refuse with 431."""
         sizes: dict[str, int] = {}
         headers: list[tuple[bytes, bytes]] = []
         for raw_name, value in scope["headers"]:
@@ -82,9 +73,6 @@ class DeclaredHeaders:
             headers = [(n, b"" if n.lower() == b"cookie" else value) for n, value in headers]
             state = {**scope.get("state", {}), "cookies": kept_cookies(lines)}
             await self._app({**scope, "headers": headers, "state": state}, receive, send)
-        elif scope["type"] == "websocket":
-            # A close before the accept makes the server respond 403.
-            await send({"type": "websocket.close", "code": 1008, "reason": "a header is too long"})
         else:
             detail = f"The header {too_long[0].title()} may have at most {MAX_BYTES:,} bytes."
             await problem(431, detail)(scope, receive, send)

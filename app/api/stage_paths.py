@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.middleware import HttpMiddleware
 from app.viewer.shared_stage import SharedStage
 
 
-class StagePaths:
+class StagePaths(HttpMiddleware):
     """Middleware that finds the stage of a request; the page and all routes are below each path.
 
     The stage's path becomes the request's root path (ASGI), so that routes match what follows it,
@@ -21,16 +22,16 @@ class StagePaths:
             app: the wrapped app.
             stages: all stages, which may change; the first has the path "".
         """
-        self._app, self._stages = app, stages
+        super().__init__(app)
+        self._stages = stages
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app."""
-        if scope["type"] in ("http", "websocket"):
-            path: str = scope["path"]
-            matching = (stage_ for stage_ in self._stages if path.startswith(f"{stage_.path}/"))
-            stage = max(matching, key=lambda shared: len(shared.path), default=self._stages[0])
-            scope.setdefault("state", {})["stage"] = stage
-            scope["root_path"] = stage.path
+        path: str = scope["path"]
+        matching = (stage_ for stage_ in self._stages if path.startswith(f"{stage_.path}/"))
+        stage = max(matching, key=lambda shared: len(shared.path), default=self._stages[0])
+        scope.setdefault("state", {})["stage"] = stage
+        scope["root_path"] = stage.path
         await self._app(scope, receive, send)
 
 

@@ -1,6 +1,6 @@
 """Connection limits: maximum of open connections in total and per address, and eviction.
 
-A connection counts from `accept` until its socket is closed, also after an upgrade to WebSocket.
+A connection counts from `accept` until its socket is closed.
 At a limit, a connection of the address with the most connections is evicted: the one idle for
 longest, or else the oldest with a request. So new addresses are admitted, and a flood of idle
 connections evicts only its own.

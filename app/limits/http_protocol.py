@@ -50,11 +50,10 @@ class LimitedHttpProtocol(H11Protocol):
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override] # as uvicorn
         """Look the connection up in the table, and attach this protocol to it."""
         super().connection_made(transport)
-        # An attribute of asyncio's transports; it stays when the connection becomes a websocket.
+        # An attribute of asyncio's transports.
         transport.max_size = READ_BYTES  # type: ignore[attr-defined]
         file = transport.get_extra_info("socket").fileno()
         self._connection: Connection | None = self.table.of_file(file)
-        self._upgraded = False
         self._since_s = time.monotonic()
         """When the server started to wait for the head or the body of a request."""
         self._body_bytes = 0
@@ -80,12 +79,6 @@ class LimitedHttpProtocol(H11Protocol):
         if not was_answering and self._is_answering():
             self._since_s, self._body_bytes = time.monotonic(), 0
             self._set_busy(True)
-
-    def handle_websocket_upgrade(self, event: h11.Request) -> None:
-        """Hand the connection over to the WebSocket protocol, which has limits of its own."""
-        self._upgraded = True
-        self._set_busy(True)
-        super().handle_websocket_upgrade(event)
 
     def send_400_response(self, msg: str) -> None:
         """Refuse a request that cannot be parsed, with the reason, and close the connection.
@@ -119,7 +112,7 @@ class LimitedHttpProtocol(H11Protocol):
         """Whether the client has exceeded a timeout."""
         if self._is_stalled(now_s):
             return True
-        if self._upgraded or self.transport.is_closing():
+        if self.transport.is_closing():
             return False
         if not self._is_answering():
             return now_s - self._since_s > HEAD_S
@@ -131,6 +124,10 @@ class LimitedHttpProtocol(H11Protocol):
     def abort(self) -> None:
         """Close the connection at once, discarding unsent data."""
         self.transport.abort()
+
+    def _should_upgrade(self) -> bool:
+        """Ignore `Upgrade`, as HTTP allows; uvicorn would log each request that has it."""
+        return False
 
     def _is_stalled(self, now_s: float) -> bool:
         unsent = self.transport.get_write_buffer_size()

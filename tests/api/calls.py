@@ -19,19 +19,17 @@ class WholeAnswers(httpx2.BaseTransport):
     """Gets each answer of an app to its end in one call into the thread of its event loop.
 
     A `TestClient` makes eight, to have the beginning of an answer while the app still sends the
-    rest. It keeps websockets.
+    rest.
     """
 
     def __init__(self, client: TestClient) -> None:
         """Wrap the transport of a client, which has a portal to its app's event loop."""
         assert client.portal is not None
-        self._portal, self._websockets = client.portal, client._transport
+        self._portal = client.portal
         self._app = httpx2.ASGITransport(client.app, client=("testclient", 50000))
 
     def handle_request(self, request: httpx2.Request) -> httpx2.Response:
         """Return the answer, with its body as it was sent."""
-        if request.url.scheme in ("ws", "wss"):
-            return self._websockets.handle_request(request)
         request.read()
         return self._portal.call(self._answer, request)
 

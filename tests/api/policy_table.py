@@ -22,7 +22,7 @@ from unittest.mock import patch
 from fastapi import FastAPI
 from fastapi.routing import APIRoute, iter_route_contexts
 from starlette.responses import JSONResponse
-from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.routing import Mount, Route
 from starlette.types import Message, Receive, Scope, Send
 
 from app.api import memory_limit
@@ -73,7 +73,6 @@ FURTHER: list[tuple[str, str]] = [
     ("POST", "/nothing"),
     ("PUT", "/nothing"),
     ("MKCOL", "/nothing"),
-    ("WS", "/nothing"),
     ("GET", "/api/v1/trainings/"),
     ("POST", "/api/v1/what-if/"),
     ("PUT", "/api/v1/what-if"),
@@ -223,15 +222,14 @@ async def _record_server(
 
 
 def operations(app: FastAPI) -> list[tuple[str, str]]:
-    """Return method and path of every route, and of `FURTHER`; `WS` is that of websockets."""
+    """Return method and path of every route, and of `FURTHER`."""
     routes: list[tuple[str, str]] = []
     for context in iter_route_contexts(app.routes):
         path = re.sub(":(path|robot)", "", context.path or "/")
         if path == "/static":
             routes.append(("GET", "/static/favicon.svg"))
         else:
-            methods = set(context.methods or {"WS"}) - {"HEAD"}
-            routes += [(method, path) for method in sorted(methods)]
+            routes += [(method, path) for method in sorted(set(context.methods or ()) - {"HEAD"})]
     return routes + FURTHER
 
 
@@ -253,25 +251,24 @@ async def _send(
     }
     filled = prefix + re.sub(r"\{(\w+)\}", lambda match: values.get(match[1], "x"), path)
     headers = {"host": "127.0.0.1:8000", "x-requested-with": "x", **role.headers}
-    kind = "websocket" if method == "WS" else "http"
     scope: Scope = {
-        "type": kind,
+        "type": "http",
         "path": filled,
         "raw_path": filled.encode(),
         "query_string": query.encode(),
         "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
         "client": ("127.0.0.1", 1),
         "server": ("127.0.0.1", 8000),
-        "scheme": "ws" if method == "WS" else "http",
+        "scheme": "http",
         "http_version": "1.1",
         "state": {},
-        **({} if method == "WS" else {"method": method}),
+        "method": method,
     }
     sent: list[Message] = []
     _notes.clear()
 
     async def receive() -> Message:
-        return {"type": f"{kind}.connect" if method == "WS" else "http.request", "body": b""}
+        return {"type": "http.request", "body": b""}
 
     async def send(message: Message) -> None:
         sent.append(message)
@@ -288,8 +285,6 @@ async def _send(
 
 def _answer(sent: list[Message]) -> tuple[str, str]:
     start = sent[0]
-    if start["type"].startswith("websocket"):
-        return start["type"].removeprefix("websocket."), start.get("reason", "")
     headers = {name.decode(): value.decode() for name, value in start["headers"]}
     cookie = " expires a cookie" if "Max-Age=0" in headers.get("set-cookie", "") else ""
     body = b"".join(message.get("body", b"") for message in sent[1:])
@@ -333,7 +328,6 @@ def _recorder() -> Iterator[None]:
             (APIRoute, "handle", _handle),
             (Route, "handle", _handle),
             (Mount, "handle", _handle),
-            (WebSocketRoute, "handle", _handle_websocket),
         ):
             stack.enter_context(patch.object(changed, name, replacement))
         stack.enter_context(patch("app.server.WorkSlots", _NamedSlots))
@@ -358,10 +352,6 @@ async def _handle(route: Any, scope: Scope, receive: Receive, send: Send) -> Non
     methods = getattr(route, "methods", None)
     status = 405 if methods and scope["method"] not in methods else PASSED
     await JSONResponse("", status)(scope, receive, send)
-
-
-async def _handle_websocket(route: Any, scope: Scope, receive: Receive, send: Send) -> None:
-    await send({"type": "websocket.accept"})
 
 
 def _as_table(cases: dict[str, dict[Outcome, list[str]]]) -> dict[str, Any]:

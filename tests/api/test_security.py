@@ -1,5 +1,6 @@
 """Authentication, Host and Origin checks of every route, found by iteration over the app."""
 
+import asyncio
 import re
 from collections.abc import Callable
 from typing import Any
@@ -8,7 +9,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 from starlette.testclient import TestClient
-from starlette.websockets import WebSocketDisconnect
+from starlette.types import Message, Scope
 
 from app.api.auth import WRONG_TOKENS
 from app.api.cookies import NAME
@@ -41,7 +42,7 @@ Serve = Callable[..., Api]
 
 
 def every_route(client: TestClient) -> list[tuple[str, str]]:
-    """Return (method, path) of all routes; the method is `WS` for websockets."""
+    """Return (method, path) of all routes."""
     app = client.app
     assert isinstance(app, FastAPI)
     routes = []
@@ -50,24 +51,17 @@ def every_route(client: TestClient) -> list[tuple[str, str]]:
         if path == "/static":
             routes.append(("GET", "/static/favicon.svg"))
         else:
-            routes += [(method, path) for method in sorted(route.methods or {"WS"})]
+            routes += [(method, path) for method in sorted(route.methods or ())]
     assert len(routes) > 30
     return routes
 
 
 def answer(client: TestClient, method: str, path: str, headers: dict[str, str]) -> int:
-    """Return the response's status; 101 for an accepted websocket."""
-    if method != "WS":
-        response = client.request(method, path, headers=headers)
-        if response.status_code >= 400 and method != "HEAD":
-            refused(response, response.status_code)
-        return response.status_code
-    try:
-        # The test client has another default Host for websockets.
-        with client.websocket_connect(path, headers={"Host": "127.0.0.1:8000", **headers}):
-            return 101
-    except WebSocketDisconnect as closed:
-        return 403 if closed.code == 1008 else closed.code
+    """Return the response's status."""
+    response = client.request(method, path, headers=headers)
+    if response.status_code >= 400 and method != "HEAD":
+        refused(response, response.status_code)
+    return response.status_code
 
 
 def routes_for(client: TestClient, headers: dict[str, str]) -> list[tuple[str, str]]:
@@ -88,7 +82,7 @@ def without_stream(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
 
 def changing(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
     """Return the routes that change something."""
-    return [(method, path) for method, path in routes if method not in SAFE | {"WS"}]
+    return [(method, path) for method, path in routes if method not in SAFE]
 
 
 def access_of(client: TestClient, method: str, path: str) -> Access:
@@ -97,7 +91,7 @@ def access_of(client: TestClient, method: str, path: str) -> Access:
     assert isinstance(app, FastAPI)
     template = re.sub(":(path|robot)}", "}", path.replace("none", "{run_id}"))
     template = "/static" if path.startswith("/static") else template
-    read = "get" if method in SAFE | {"WS"} else method.lower()
+    read = "get" if method in SAFE else method.lower()
     return policies(app)[read, template].access
 
 
@@ -211,7 +205,7 @@ def test_reading_needs_the_token_if_so_configured(serve: Serve) -> None:
         if access_of(client, method, path).spectators == "always":
             assert status in (200, 404, 503), (method, path)
         else:
-            assert status == (403 if method == "WS" else 401), (method, path)
+            assert status == 401, (method, path)
 
 
 @pytest.mark.parametrize("how", ["Bearer", "bearer", "cookie"])
@@ -336,8 +330,6 @@ def test_wrong_session_cookies_are_rate_limited_like_tokens(serve: Serve) -> Non
 def test_every_response_has_security_headers(shared: Serve) -> None:
     client = shared().client
     for method, path in without_stream(every_route(client)):
-        if method == "WS":
-            continue
         headers = client.request(method, path).headers
         assert headers["x-content-type-options"] == "nosniff", path
         assert "frame-ancestors 'self'" in headers["content-security-policy"], path
@@ -345,6 +337,25 @@ def test_every_response_has_security_headers(shared: Serve) -> None:
     page = client.get("/").headers["content-security-policy"]
     assert "script-src 'self' 'sha256-" in page
     assert "unsafe-inline" not in page.partition("script-src")[2].partition(";")[0]
+
+
+@pytest.mark.parametrize("path", ["/", "/viewer/", "/static/favicon.svg", "/api/v1/events", "/x"])
+def test_app_speaks_no_other_protocol_than_http(shared: Serve, path: str) -> None:
+    """No guard knows websockets; a server that speaks them gets an error for each."""
+    client = shared().client
+    scope: Scope = {"type": "websocket", "path": path, "headers": [], "query_string": b""}
+
+    async def receive() -> Message:
+        return {"type": "websocket.connect"}
+
+    async def send(message: Message) -> None:
+        raise AssertionError(message)
+
+    async def connect() -> None:
+        await client.app(scope, receive, send)
+
+    with pytest.raises(RuntimeError, match="HTTP alone, not websocket"):
+        asyncio.run(connect())
 
 
 def test_request_bodies_are_limited(serve: Serve) -> None:
