@@ -354,7 +354,10 @@ class Stage:
         self._last_s = now
         run = self._state.run
         run_ended = run is None or not run.is_computed
-        self._show.advance(elapsed_s if self._playing else 0.0, self._speed, run_ended)
+        if self._playing:
+            self._show.advance(elapsed_s, self._speed, run_ended)
+        else:
+            self._show.update(run_ended=run_ended)
 
     def _plan(self, now: float) -> bool:
         """Plan the playhead anew unless the picture still follows it; return if that was needed."""

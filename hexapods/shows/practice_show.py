@@ -88,6 +88,8 @@ class PracticeShow(PlayedShow):
         self._evaluations: list[Ghost] = []
         self._done: float | None = None
         """Playback position in steps, with a fraction; None before the first step is recorded."""
+        self._is_sought = False
+        """Whether playback is far behind the newest step because it was sought there."""
         self._played_s = 0.0
         """Motion played since the time-lapse began [s]; gaps in the recording do not count."""
         self._run_ended = False
@@ -172,6 +174,7 @@ class PracticeShow(PlayedShow):
         self._update()
         if not self._step_numbers:
             return
+        self._is_sought = True
         low, high = self._step_numbers[0] - 1.0, float(self._step_numbers[-1])
         self._done = self._skip_gap(min(max(self._steps_in(time_s), low), high))
         self._played_s = bisect_left(self._step_numbers, self._done) * self._step_s
@@ -265,6 +268,9 @@ class PracticeShow(PlayedShow):
             # Growth by a factor each second is linear in the motion played, so it needs no state.
             return 1.0 + math.log(GROWTH_PER_S) * max(0.0, self._played_s - slow_s)
         lag_s = (self._step_numbers[-1] - (self._done or 0.0)) * self._step_s / pace
+        self._is_sought &= lag_s > _MAX_LAG_S
+        if self._is_sought:
+            return pace
         if lag_s > _MAX_LAG_S:
             self._done = self._step_numbers[-1] - _TARGET_LAG_S * pace / self._step_s
             return pace

@@ -373,6 +373,21 @@ def test_play_after_the_end_restarts_the_show(parts: StageParts) -> None:
     assert parts.next_frame().time_s < 1
 
 
+def test_a_live_training_stays_where_it_is_paused_or_sought(parts: StageParts) -> None:
+    run, advance = parts.running_training(steps=60, pace=1)
+    parts.stage.set(run_id=run.id)
+    for _ in range(10):
+        advance()
+    parts.stage.frame()
+    parts.stage.set(playing=False, time_s=1.0)
+    for _ in range(30):
+        advance()
+    assert parts.watch(5)[-1].time_s == 1.0
+
+    parts.stage.set(playing=True, time_s=2.0)
+    assert parts.watch(1)[-1].time_s == pytest.approx(3.0, abs=0.05)
+
+
 def test_after_a_stall_the_picture_follows_the_clock_as_pages_do(parts: StageParts) -> None:
     parts.stage.set(run_id=parts.finished_race().id, speed=1)
     before_s = parts.next_frame().time_s
