@@ -16,7 +16,6 @@ from hexapods.drawing.viser_internals.client import content_policy, patched_page
 STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "legs.js", "labels.js")
 ALLOWED_QUERY = frozenset(
     {
-        "view",
         "theme",
         "initialCameraPosition",
         "initialCameraLookAt",

@@ -14,14 +14,15 @@ import {
 } from "./on-stage.js";
 import { isActive, isOperator, markAsMine, mayStart } from "./selectors.js";
 import {
-  closeReplay, openReplay, plan, playReplay, replayLink, replayTime, seekReplay, setReplayClock, setReplaySpeed,
-} from "./replay.js";
+  closeReplay, isOwn, openReplay, plan, playback, playReplay, position, seekReplay, setReplayClock,
+  setReplaySpeed,
+} from "./player.js";
 import { beginOfStep } from "./replay-frames.js";
 import { features, kindOf } from "./features.js";
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
-  commonStage, isAway, markGone, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
+  isAway, markGone, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -191,7 +192,7 @@ const commands = oneAtATime("work", async (/** @type {{ verb: Verb, id: string }
   if (!requested || current?.id !== id || current.state === STATES[verb]) return;
   // A race that waits for its training stops that too.
   await requestRun(() => api.command(verb === "stop" ? requested : current, verb));
-  const { run_id, playing } = commonStage.value ?? {};
+  const { run_id, playing } = stage.value ?? {};
   if (!isOperator.value) return;
   if (verb === "stop" ? playing === false : run_id === id) await api.putStage({ playing: verb !== "pause" });
 });
@@ -201,13 +202,13 @@ const STATES = { pause: "paused", resume: "running", stop: "stopped" };
 
 /** Pause or resume the training on stage, else the playback. */
 export function togglePause() {
-  if (page.run.value !== null) {
+  if (isOwn.value) {
     togglePlaying();
     return;
   }
   if (!isOperator.value) return;
   const current = work.value?.current;
-  if (current && current.id === stage.value?.run_id && current.kind === "training") {
+  if (current && current.id === playback.value?.run_id && current.kind === "training") {
     const state = STATES[commands.unanswered().verb ?? ""] ?? current.state;
     if (state === "paused") resume();
     else if (state === "running") pause();
@@ -229,8 +230,8 @@ export const branchRace = (race, step, disturbances) =>
     const body = { branch_from: { race_id: race.id, step }, disturbances };
     const run = await adopt(() => api.startRace(body));
     // The stage keeps its moment by itself, for all who watch.
-    if (run && page.run.peek() === null) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
-    else if (run) await openReplay(run.id, { time_s: beginOfStep(plan.peek(), step, replayTime.peek()) });
+    if (run && !isOwn.peek()) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
+    else if (run) await openReplay(run.id, { time_s: beginOfStep(plan.peek(), step, position.peek()) });
     return run;
   });
 
@@ -238,7 +239,7 @@ export const branchRace = (race, step, disturbances) =>
 
 /** @param {StageChanges} changes */
 export function setStage(changes) {
-  if (page.run.value === null) return stageChanges.request(changes);
+  if (!isOwn.value) return stageChanges.request(changes);
   const { time_s, playing, speed, clock } = changes;
   setEntry(problems, "stage", null);
   if (typeof speed === "number") setReplaySpeed(speed);
@@ -266,7 +267,7 @@ export const seekIn = (id) =>
 
 export const togglePlaying = () => {
   const willPlay = stageChanges.unanswered().playing ?? isPlaying.value;
-  if (canPlay.value && !isStale.value && stage.value?.run_id) setStage({ playing: !willPlay });
+  if (canPlay.value && !isStale.value && playback.value?.run_id) setStage({ playing: !willPlay });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
 
@@ -375,9 +376,9 @@ export const isShown = (run) => shownRun.value?.id === run.id;
 
 /** Copy a link to what the page shows; where there is no clipboard, show it in the address bar. */
 export async function share() {
-  const isOwn = page.run.value !== null;
-  const address = isOwn ? replayLink() : linkTo();
-  const contents = isOwn ? "It opens this replay at this moment." : "It contains every setting that was changed.";
+  const moment = { run: page.run.peek(), ghost: page.ghost.peek(), moment: position.peek() };
+  const address = linkTo(isOwn.value ? moment : undefined);
+  const contents = isOwn.value ? "It opens this replay at this moment." : "It contains every setting that was changed.";
   if (!(await copy(address, `Link copied. ${contents}`))) {
     showAddress(address);
     toast("The address bar has the link: copy it from there.");

@@ -580,6 +580,12 @@ export interface Finding {
   evidence: string;
 }
 /**
+ * The time of the server's clock [s], after a while without other events.
+ */
+export interface ClockEvent {
+  sent_s: number;
+}
+/**
  * A run as commands for a shell, and as a Python program.
  */
 export interface CodeView {
@@ -1092,7 +1098,8 @@ export interface EventBodies {
   reference: ReferenceEvent;
   rates: RatesEvent;
   stage: StageView;
-  scene: SceneView;
+  piece: PieceEvent;
+  clock: ClockEvent;
   viewers: ViewersEvent;
   robots: RobotsEvent;
   room: RoomEvent;
@@ -1841,7 +1848,45 @@ export interface StageView {
   next_run_id: string | null;
   holder: string | null;
   announced: Announcement | null;
+  /**
+   * time of the server's clock when this was written [s]; only differences count.
+   */
+  sent_s: number;
+  /**
+   * of the frames of the run on stage, as of its replay; null for an empty stage.
+   */
+  version: string | null;
+  playhead: Playhead;
   presentation: Presentation;
+}
+/**
+ * The time of the run that is shown [s], as a function of the time of the server's clock.
+ */
+export interface Playhead {
+  /**
+   * time of the clock at the first point [s].
+   */
+  at_s: number;
+  /**
+   * at `at_s + after_s` the picture is at `time_s` of the run; between two points it moves uniformly. At least one, in order of time.
+   */
+  points: [number, number][];
+  /**
+   * seconds of the run per second after the last point; 0 where it holds there.
+   */
+  rate: number;
+  /**
+   * time of the run up to which it is computed.
+   */
+  computed_s: number;
+  /**
+   * of the run; null while it is not known.
+   */
+  duration_s: number | null;
+  /**
+   * of a race; null of a training, and until it is known.
+   */
+  time_out_s: number | null;
 }
 /**
  * State of presenters' windows beside the stage; set by their keys or by a remote.
@@ -1986,6 +2031,48 @@ export interface RatesEvent {
   settings?: {
     [k: string]: number | string | boolean | null;
   };
+}
+/**
+ * Frames of the run on stage, before they are shown; see `docs/replays.md`.
+ */
+export interface PieceEvent {
+  /**
+   * of the run.
+   */
+  run_id: string;
+  /**
+   * that times a race.
+   */
+  clock: "paper" | "wall" | "free";
+  /**
+   * of the run's frames.
+   */
+  version: string;
+  /**
+   * level of the frames, and number of the first; null for a single frame.
+   */
+  level: number | null;
+  /**
+   * level of the frames, and number of the first; null for a single frame.
+   */
+  first: number | null;
+  /**
+   * number of frames; the last ones may be missing at the end of the run.
+   */
+  count: number;
+  /**
+   * time of a single frame, which the stage holds; null for others.
+   */
+  time_s: number | null;
+  /**
+   * time of the server's clock when this was written [s].
+   */
+  sent_s: number;
+  playhead: Playhead;
+  /**
+   * the frames, encoded as in a replay; base64.
+   */
+  data: string;
 }
 /**
  * The number of pages that watch the stage.

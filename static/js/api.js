@@ -324,6 +324,9 @@ export async function getReplayFrames(id, address, query) {
   return (await request("GET", path)).arrayBuffer();
 }
 
+/** The scene of a stage without a run, encoded as that of a replay. @throws {RequestError} */
+export const getStartLine = async () => (await request("GET", "start-line")).arrayBuffer();
+
 /** @returns {Promise<Stage>} */
 export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */

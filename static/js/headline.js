@@ -6,11 +6,11 @@ import { metres, sentence } from "./format.js";
 import { canPlay, conditionsShown, raceInView, resumableOnStage, shownRun } from "./on-stage.js";
 import { page } from "./page-state.js";
 import { knownRace } from "./race.js";
-import { isBuffering, replayProblem } from "./replay.js";
+import { isBuffering, isOwn, playback, replayProblem } from "./player.js";
 import { narrativeOf } from "./narrative/narrative.js";
 import { isOperator, guestRuns } from "./selectors.js";
 import { agentOf } from "./settings.js";
-import { connection, isAway, runs, scene, stage } from "./store.js";
+import { connection, isAway, runs, scene } from "./store.js";
 import { scale } from "./time.js";
 import { clockTitle } from "./titles.js";
 import { curve } from "./training.js";
@@ -51,12 +51,12 @@ const situation = computed(() => {
   const run = shownRun.value;
   return {
     ...knownRace.value, run, race: run?.kind === "race" ? run : raceInView.value,
-    scene: sceneOf(run), stage: stage.value,
+    scene: sceneOf(run), stage: playback.value,
     tests: run?.kind === "training" ? testsOf(run) : [], happened: run?.kind === "race" ? happenedIn(run) : [],
     conditions: conditionsShown.value, clockTitle: clockTitle(knownRace.value.clock),
     recordedStep: run?.kind === "training" ? scale.value?.computed ?? null : null,
     goesOnWith: resumableOnStage.value, ghosts: ghostsInWords(), problem: replayProblem.value,
-    isAway: isAway.value, isOwn: page.run.value !== null,
+    isAway: isAway.value, isOwn: isOwn.value,
     isOfGuest: guestRuns.value.includes(page.run.value ?? ""), isBuffering: isBuffering.value,
     canPlay: canPlay.value, canResume: isOperator.value,
   };

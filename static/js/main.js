@@ -1,10 +1,11 @@
 // Entry point: loads the options, opens the event stream, renders the page.
 import { effect, untracked } from "@preact/signals";
 import { render } from "preact";
-import { getStage } from "./api.js";
+import { addressOf, getStage } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
+import { openEvents } from "./events.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
 import { addCodeFor, features, followFields, installFeatures } from "./features.js";
@@ -12,10 +13,10 @@ import { followHistory, page, reload } from "./page-state.js";
 import { followTheme } from "./page.js";
 import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
-import { followReplay } from "./replay.js";
+import { followPlayer, isOwn } from "./player.js";
 import { followRuns, stageIds } from "./runs.js";
 import {
-  applyEvent, connection, eventNames, followOptions, isLockedOut, isLockOut, openEvents, role, version,
+  applyEvent, connection, eventNames, followOptions, isLockedOut, isLockOut, role, version,
 } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 import { followChartDepth } from "./workspace.js";
@@ -63,7 +64,7 @@ reloadAfterUpgrade();
 followRuns(stageIds);
 followCurves(trainingsInView);
 followTimeline();
-followReplay();
+followPlayer();
 announceOutcomes();
 followTitle();
 listenForKeys();
@@ -73,7 +74,7 @@ openEvents(eventNames(), applyEvent, (state) => {
   if (state === "live") isLockedOut.value = false;
   // The stream does not say why it ended: the server may have come back with a token.
   if (state === "reconnecting") getStage().catch((error) => (isLockedOut.value = isLockOut(error)));
-});
+}, () => addressOf(`events?picture=${!isOwn.value}`));
 followOptions(openForms);
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));

@@ -6,12 +6,13 @@ import { conditionsAt, conditionsInWords, disturbancesOf } from "./disturbances.
 import { form } from "./form.js";
 import { count, duration, sentence, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
-import { earlyEndOf } from "./narrative/states.js";
+import { earlyEndOf } from "./narrative/moment.js";
 import {
   hasTable, isActive, isKnown, isOperator, isGuest, myRuns, runOf, stageableRuns, trainingIds, isWalk,
 } from "./selectors.js";
 import { learns } from "./settings.js";
-import { commonStage, isAway, isLockedOut, ownStage, scene, stage } from "./store.js";
+import { isOwn, playback } from "./player.js";
+import { isAway, isLockedOut, scene, stage } from "./store.js";
 import { partsOf } from "./features.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -20,32 +21,32 @@ import { partsOf } from "./features.js";
 // ---- what is on stage
 
 /** The run on stage; null if there is none, or it is not known (yet). */
-export const shownRun = computed(() => runOf(stage.value?.run_id));
+export const shownRun = computed(() => runOf(playback.value?.run_id));
 
-/** The scene, if it is of the run on stage: the events of both come one after the other. */
+/** The scene, if it is of the run on stage: its first frame comes later. */
 const sceneOnStage = computed(() => {
   const now = scene.value;
-  return now && stage.value && now.run_id === stage.value.run_id ? now : null;
+  return now && playback.value && now.run_id === playback.value.run_id ? now : null;
 });
 
 /** Whether the picture is the last one that was heard of: a replay of this page's own goes on without the server. */
-export const isStale = computed(() => isAway.value && ownStage.value === null);
+export const isStale = computed(() => isAway.value && !isOwn.value);
 
 /** The phase of the stage; "empty" before the first snapshot too. */
-export const phase = computed(() => stage.value?.phase ?? "empty");
+export const phase = computed(() => playback.value?.phase ?? "empty");
 
 /** Whether the stage plays: one that shows the end of its run does not, nor one that is not heard. */
 export const isPlaying = computed(() =>
-  stage.value !== null && stage.value.playing && !stage.value.ended && !isStale.value);
+  playback.value !== null && playback.value.playing && !playback.value.ended && !isStale.value);
 
 /** Kind of the picture: live of a run that goes on, else a replay. */
 export const playbackName = computed(() => (isActive(shownRun.value) ? "picture" : "replay"));
 
 /** Whether this page may play and seek: the common stage is the operators', a replay of its own is anybody's. */
-export const canPlay = computed(() => isOperator.value || ownStage.value !== null);
+export const canPlay = computed(() => isOperator.value || isOwn.value);
 
 /** The clock under which the stage times the race. */
-export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? "paper");
+export const clock = computed(() => playback.value?.clock ?? "paper");
 
 // ---- the runs that the panels are about
 
@@ -54,7 +55,7 @@ export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? 
  * @param {Run} race
  */
 export const isToCome = (race) => {
-  const next = stage.value?.next_run_id;
+  const next = playback.value?.next_run_id;
   return isKnown(next) && [race.id, ...trainingIds(race)].includes(next);
 };
 
@@ -113,10 +114,10 @@ export const liveTraining = computed(() => {
 /** This tab's run, while the stage shows another one. */
 export const offStage = computed(() => {
   const { requested, current } = myWork.value ?? {};
-  const onStage = commonStage.value?.run_id;
+  const onStage = stage.value?.run_id;
   if (!requested || !current || !onStage || isGuest.value || isAway.value) return null;
-  const isOwn = [requested.id, current.id, ...trainingIds(requested)].includes(onStage);
-  return isOwn || commonStage.value?.next_run_id === requested.id ? null : current;
+  const isShown = [requested.id, current.id, ...trainingIds(requested)].includes(onStage);
+  return isShown || stage.value?.next_run_id === requested.id ? null : current;
 });
 
 /** Whether a run can be resumed that ended before its last step. @param {Run | null | undefined} run */
@@ -229,7 +230,7 @@ export const conditionsShown = computed(() => {
 /** The race whose replay is held: paused, or at its end. */
 export const heldRace = computed(() => {
   const race = raceInView.value;
-  const isHeld = stage.value !== null && (!stage.value.playing || stage.value.ended);
+  const isHeld = playback.value !== null && (!playback.value.playing || playback.value.ended);
   return race?.state === "finished" && raceScene.value && isHeld && !work.value ? race : null;
 });
 
@@ -251,7 +252,7 @@ export const steering = computed(() => {
     return isShown && done - (shown ?? 0) <= MAX_LAG_STEPS ? null : { step: done + 1, shown };
   }
   const isBehind = shownRun.value?.kind === "training" && phase.value === "showing";
-  return isBehind && stage.value?.origin === "started" ? "computed" : null;
+  return isBehind && playback.value?.origin === "started" ? "computed" : null;
 });
 
 // ---- progress of the running work, or of what plays
@@ -314,7 +315,7 @@ function ofWork({ requested, current }) {
 
 /** @param {Run} run */
 function notShown(run) {
-  if (!stage.value?.run_id || stage.value.run_id === run.id) return "";
+  if (!playback.value?.run_id || playback.value.run_id === run.id) return "";
   return isToCome(run) ? ", shown next" : ", not on stage";
 }
 
@@ -322,11 +323,11 @@ function notShown(run) {
 function ofPlayback(now) {
   if (!now || now.kind === "idle" || !now.duration_s || phase.value === "ended") return null;
   if (["waiting", "start-line"].includes(now.phase)) return null;
-  const end = (stage.value?.end_at_time_out ? now.time_out_s : null) ?? now.duration_s;
+  const end = (playback.value?.end_at_time_out ? now.time_out_s : null) ?? now.duration_s;
   const last = Math.min(now.computed_s, Math.max(end, now.time_s));
   const rest = Math.max(0, last - now.time_s) / (now.shown_speed || 1);
-  const isTimeLapse = now.kind === "training" && stage.value?.speed === "time-lapse";
-  const isPaused = stage.value?.playing === false;
+  const isTimeLapse = now.kind === "training" && playback.value?.speed === "time-lapse";
+  const isPaused = playback.value?.playing === false;
   return {
     label: isPaused ? `The ${playbackName.value} is paused` : showing(now),
     left: isPaused || isTimeLapse ? "" : `${duration(rest)} left`,
@@ -337,7 +338,7 @@ function ofPlayback(now) {
 
 /** @param {Scene} now */
 function showing(now) {
-  if (stage.value?.origin !== "started") return `Replaying the ${now.kind}`;
+  if (playback.value?.origin !== "started") return `Replaying the ${now.kind}`;
   const how = earlyEndOf(shownRun.value) ? "as far as it came" : "to its end";
   return `Showing the ${now.kind}, which is computed ${how}`;
 }

@@ -1,6 +1,8 @@
 // What concerns this page alone and is in no link: dialogs, large type, the window's size, what the browser keeps;
 // and texts and links that are copied, which is told for a few seconds.
 import { computed, effect, signal } from "@preact/signals";
+import { page } from "./page-state.js";
+import { scene } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "./replay-frames.js" */
@@ -75,7 +77,6 @@ export function followTheme() {
 
 // ---- the 3D view: what only this page draws in it, and what is clicked there
 
-
 /**
  * A cell of a foot grid: its scene node, and its number there; and the run that was shown.
  * @typedef {{ node: string, instance: number, run_id: string | null }} Click
@@ -85,6 +86,51 @@ export function followTheme() {
 export const drawHere = signal(/** @type {((messages: Message[]) => void) | null} */ (null));
 /** The last click on a foot grid, until it is answered. @type {Signal<Click | null>} */
 export const clickedCell = signal(null);
+
+// ---- the legs of the robots in the picture: where they are, which one was picked, and the menu that opens there. The
+// 3D view projects the poses that it draws (viewer/legs.js), and tells of them in pixels of the picture
+
+/** A point of the picture [px]. @typedef {{ x: number, y: number }} Point */
+/** What was picked: a leg, from 1, the body, or the ground; of a lane, from 0. */
+/** @typedef {Point & { lane: number, what: "leg" | "body" | "ground", leg: number | null }} Pick */
+
+/** What was picked last, while its menu is open. @type {Signal<Pick | null>} */
+export const picked = signal(null);
+/** Whether the legs of the followed robot are numbered, to choose from. */
+export const legsAreOpen = computed(() => legsOf.value !== null || picked.value !== null);
+/** The lane whose legs are numbered; null where none are. @type {Signal<number | null>} */
+export const legsOf = signal(null);
+/** Where the legs of that lane are. @type {Signal<(Point & { leg: number })[]>} */
+export const legPoints = signal([]);
+
+/** The lane that the camera follows: of the leader where it follows that. */
+const followedLane = () => {
+  const lanes = scene.peek()?.lanes ?? [];
+  const lane = Number(page.camera.peek()) - 1;
+  return lanes[lane] ? lane : lanes.find(({ rank }) => rank === 1)?.lane ?? 0;
+};
+
+/** Number the legs of the robot that is followed. */
+export const openLegs = () => {
+  if (!scene.peek()?.lanes.length) return;
+  picked.value = null;
+  legsOf.value = followedLane();
+};
+
+export const closeLegs = () => {
+  legsOf.value = null;
+  picked.value = null;
+  legPoints.value = [];
+};
+
+/** Open the menu of a leg that is numbered. @param {number} leg */
+export function pickLeg(leg) {
+  const point = legPoints.peek().find((candidate) => candidate.leg === leg);
+  const lane = legsOf.peek();
+  if (point && lane !== null) picked.value = { ...point, lane, what: "leg" };
+}
+
+// ---- texts that are copied
 
 /** The message that is shown for a few seconds. @type {Signal<string | null>} */
 export const toastMessage = signal(null);

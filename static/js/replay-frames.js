@@ -1,7 +1,9 @@
-// Frames of a replay: decodes them, and tells what to send to the 3D view to be at one of them.
+// Frames of a run: decodes them, and tells what to send to the 3D view to be at one of them.
 // Their encoder: hexapods/drawing/replay_encoding.py.
 
-/** @import { ReplayPlan } from "./types.js" */
+import { SAME_MOMENT_S } from "./format.js";
+
+/** @import { Playhead, ReplayPlan } from "./types.js" */
 
 /** A message of viser. @typedef {Record<string, any> & { type: string }} Message */
 /** Position of each view on the ground [m]. @typedef {Record<string, [number, number]>} FollowPoints */
@@ -14,7 +16,7 @@ const ARRAYS = {
   "<f4": Float32Array, "<f8": Float64Array, "|u1": Uint8Array, "<u2": Uint16Array, "<u4": Uint32Array,
   "|i1": Int8Array, "<i2": Int16Array, "<i4": Int32Array,
 };
-/** Time constant with which the leader is followed, as in the live view (hexapods/drawing/scene.py) [s]. */
+/** Time constant with which the leader is followed, [s]. */
 const SMOOTHING_S = 0.25;
 /** Of so many frames at once only the last is shown. */
 const MAX_STEPS = 4;
@@ -102,11 +104,18 @@ function posesOf(packed, { step, planes, series, tracks }) {
   };
 }
 
+/** Decode frames that are sent as text, compressed. @param {string} text in base 64 */
+export async function unpack(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return decode(await new Response(unpacked).arrayBuffer());
+}
+
 /** The messages about one entity by their slots. @typedef {Map<string, Message>} Slots */
 
 /**
  * State of the 3D view of a run: the newest message for each slot. A newer message replaces the one in its slot; a node
- * that is created or removed loses all earlier messages about it, as in app/viewer/snapshot.py.
+ * that is created or removed loses all earlier messages about it.
  */
 export class SceneState {
   /** @param {Frames} scene the scene at the start of the run, on which every segment is based */
@@ -115,10 +124,32 @@ export class SceneState {
     /** The node that all others are in. */
     this.world = world;
     this.start = frames.flatMap(({ messages }) => messages);
-    /** @type {Map<string, Slots>} */
-    this.base = new Map();
-    for (const message of this.start) this.put(this.base, message);
+    this.base = this.stateAfter(this.start);
     this.clear();
+  }
+
+  /**
+   * Base the frames that follow on another version of the scene. What is shown stays until the next jump, which sends
+   * no more of the scene than what differs.
+   * @param {Frames} scene
+   */
+  rebase({ frames }) {
+    const before = this.base;
+    this.start = frames.flatMap(({ messages }) => messages);
+    this.base = this.stateAfter(this.start);
+    for (const [entity, slots] of this.base) {
+      const known = before.get(entity);
+      if (known && isEqual([...known], [...slots])) this.base.set(entity, known);
+      else this.changed.add(entity);
+    }
+  }
+
+  /** @private @param {Message[]} messages */
+  stateAfter(messages) {
+    /** @type {Map<string, Slots>} */
+    const state = new Map();
+    for (const message of messages) this.put(state, message);
+    return state;
   }
 
   /** Forget what is shown, and return the messages that show the start of the run instead. */
@@ -216,12 +247,21 @@ export class SceneState {
   }
 }
 
+/** Whether two values of messages are the same in all their parts. @type {(a: any, b: any) => boolean} */
+function isEqual(a, b) {
+  if (a === b) return true;
+  if (a === null || b === null || typeof a !== "object" || a.constructor !== b?.constructor) return false;
+  const keys = Object.keys(a);
+  return keys.length === Object.keys(b).length && keys.every((key) => isEqual(a[key], b[key]));
+}
+
 /** @type {(entity: string) => Message} */
 const removal = (entity) => ({ type: "RemoveSceneNodeMessage", name: entity.slice(entity.indexOf(" ") + 1) });
 
-/** Keeps what the camera follows in the middle of the world: a lane at once, the leader smoothly. */
+/** Keeps what the camera follows in the middle of the world: a lane at once, the leader smoothly; "free" nothing. */
 export class Follower {
   constructor() {
+    this.x = 0;
     this.y = 0;
   }
 
@@ -234,10 +274,10 @@ export class Follower {
    * @returns {Message}
    */
   centring({ world }, { follow }, view, elapsed_s) {
-    const [x, y] = follow[view] ?? [0, 0];
-    if (view === "leader") this.y = y + (this.y - y) * Math.exp(-elapsed_s / SMOOTHING_S);
-    const at = view === "leader" ? this.y : y;
-    return { type: "SetPositionMessage", name: world, position: [-x, -at, 0], owner: "" };
+    const [x, y] = view === "free" ? [this.x, this.y] : follow[view] ?? [0, 0];
+    const share = view === "leader" ? Math.exp(-elapsed_s / SMOOTHING_S) : 0;
+    [this.x, this.y] = [x, y + (this.y - y) * share];
+    return { type: "SetPositionMessage", name: world, position: [-this.x, -this.y, 0], owner: "" };
   }
 }
 
@@ -250,14 +290,34 @@ export function inRecording(recorded_s, time_s) {
   return next ? Math.max(time_s, next[0]) : recorded_s.at(-1)?.[1] ?? 0;
 }
 
-// ---- the segments that this page has: requests them when they are first needed, and again when the run has
-// recorded more
+/**
+ * The moment of the stage's picture at a time of the server's clock, and how fast it moves there.
+ * @param {Playhead} playhead
+ * @param {number} server_s
+ */
+export function momentOf({ at_s, points, rate }, server_s) {
+  const after_s = Math.max(server_s - at_s, points[0][0]);
+  const next = points.findIndex(([point_s]) => point_s > after_s);
+  const [begin_s, begin] = points.at(next - (next < 0 ? 0 : 1)) ?? points[0];
+  const speed = next < 0 ? rate : (points[next][1] - begin) / (points[next][0] - begin_s);
+  return { time_s: begin + (after_s - begin_s) * speed, rate: speed };
+}
 
-/** A segment; `end_s` is the end of the recording when it was last requested. */
-/** @typedef {{ frames: Frames | null, end_s: number, isPending: boolean }} Segment */
+/** How much faster or slower the picture goes to be where it should, and what error is too great for that [s]. */
+const [CATCH_UP, GREATEST_ERROR_S] = [0.1, 0.5];
 
-const MAX_KEPT_SEGMENTS = 60;
-const SAME_FRAME_S = 1e-6;
+/**
+ * Where the picture goes from a moment, to be at another one: a small error is made up for by its speed.
+ * @type {(from_s: number, to_s: number, rate: number, elapsed_s: number) => number}
+ */
+export function approached(from_s, to_s, rate, elapsed_s) {
+  const step_s = rate * elapsed_s;
+  const error_s = to_s - from_s - step_s;
+  if (rate <= 0 || !(Math.abs(error_s) < GREATEST_ERROR_S * rate)) return to_s;
+  return from_s + step_s + Math.sign(error_s) * Math.min(Math.abs(error_s), CATCH_UP * step_s);
+}
+
+// ---- what the plan of a replay tells
 
 /** The last moment that is recorded [s]. @param {ReplayPlan} plan */
 export const endOf = ({ recorded_s }) => recorded_s.at(-1)?.[1] ?? 0;
@@ -271,78 +331,23 @@ export const beginOfStep = (plan, steps, earlier_s) => {
   return Math.min(earlier_s, ...ends);
 };
 
-/** @type {(level: number, number: number) => string} */
-const addressOf = (level, number) => `segments/${level}/${number}`;
+/** Time-out of the race [s]; null until it is known. @param {ReplayPlan | null} plan */
+export const timeOutOf = (plan) => plan?.marks.find(({ kind }) => kind === "time-out")?.time_s ?? null;
+
+/** How many steps the first lane has taken until a time [s]. */
+/** @type {(plan: ReplayPlan | null, time_s: number) => number} */
+export const stepsUntil = (plan, time_s) =>
+  (plan?.step_ends_s[0] ?? []).filter((end) => end <= time_s + SAME_MOMENT_S).length;
 
 /**
- * The place of a moment's frame: its index in a segment of the level that fits a speed. `next` is the segment after
- * that, null where none is recorded.
- * @type {(plan: ReplayPlan, speed: number, time_s: number) => { address: string, next: string | null, index: number }}
+ * The end of the next step or of the one before, of a lane or of all if there is none of this number [s]; null after
+ * the last.
+ * @type {(plan: ReplayPlan | null, lane: number, time_s: number, direction: 1 | -1) => number | null}
  */
-export function placeOf(plan, speed, time_s) {
-  const { frame_s, segment_frames, lowest_level, highest_level } = plan;
-  const level = Math.min(Math.max(Math.round(Math.log2(speed)), lowest_level), highest_level);
-  const interval_s = frame_s * 2 ** level;
-  // The server has no frame after the end, however close.
-  const isRecorded = (/** @type {number} */ frame) => frame * interval_s <= endOf(plan);
-  const rounded = Math.floor(time_s / interval_s + SAME_FRAME_S);
-  const frame = isRecorded(rounded) ? rounded : rounded - 1;
-  const number = Math.floor(frame / segment_frames);
-  return {
-    address: addressOf(level, number),
-    next: isRecorded((number + 1) * segment_frames) ? addressOf(level, number + 1) : null,
-    index: frame % segment_frames,
-  };
-}
-
-export class Segments {
-  /**
-   * @param {(address: string) => Promise<Frames>} load
-   * @param {(error: unknown, again: () => void) => void} refuse takes an error, and lets the request be made again
-   */
-  constructor(load, refuse) {
-    this.load = load;
-    this.refuse = refuse;
-    /** Those that were needed last come last. @type {Map<string, Segment>} */
-    this.kept = new Map();
-  }
-
-  /** Forget all; answers that are still to come are ignored. */
-  clear() {
-    this.kept.clear();
-  }
-
-  /**
-   * The frames of a segment that are here; null before the first answer.
-   * @param {string} address
-   * @param {number} most frames that a segment can have
-   * @param {number} end_s of what is recorded
-   */
-  get(address, most, end_s) {
-    const segment = this.kept.get(address) ?? { frames: null, end_s: -Infinity, isPending: false };
-    this.kept.delete(address);
-    this.kept.set(address, segment);
-    for (const oldest of this.kept.keys()) {
-      if (this.kept.size <= MAX_KEPT_SEGMENTS) break;
-      this.kept.delete(oldest);
-    }
-    const isWhole = (segment.frames?.frames.length ?? 0) >= most;
-    if (!isWhole && !segment.isPending && segment.end_s < end_s) this.request(address, segment, end_s);
-    return segment.frames;
-  }
-
-  /**
-   * @private
-   * @type {(address: string, segment: Segment, end_s: number) => Promise<void>}
-   */
-  async request(address, segment, end_s) {
-    segment.isPending = true;
-    try {
-      segment.frames = await this.load(address);
-      segment.end_s = end_s;
-      segment.isPending = false;
-    } catch (error) {
-      if (this.kept.get(address) === segment) this.refuse(error, () => (segment.isPending = false));
-    }
-  }
+export function nextStep(plan, lane, time_s, direction) {
+  const lanes = plan?.step_ends_s ?? [];
+  const ends = lanes[lane] ?? lanes.flat().sort((a, b) => a - b);
+  return direction > 0
+    ? ends.find((end) => end > time_s + SAME_MOMENT_S) ?? null
+    : ends.findLast((end) => end < time_s - SAME_MOMENT_S) ?? 0;
 }

@@ -3,7 +3,7 @@ import { kindOf } from "./features.js";
 import { count, distanceApart, metres, percentage, sentence, whole } from "./format.js";
 import { commonInWords, differenceInWords, fieldsOf, variedIn } from "./run-settings.js";
 import { distanceOf } from "./runs.js";
-import { earlyEndOf } from "./narrative/states.js";
+import { earlyEndOf } from "./narrative/moment.js";
 import { isActive, isWalk } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { references } from "./store.js";

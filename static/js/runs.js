@@ -2,8 +2,9 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getAnyRun, listRuns } from "./api.js";
 import { page } from "./page-state.js";
+import { playback } from "./player.js";
 import { trainingIds } from "./selectors.js";
-import { connection, damagedRuns, isGone, markGone, requestRun, requestRuns, runs, stage } from "./store.js";
+import { connection, damagedRuns, isGone, markGone, requestRun, requestRuns, runs } from "./store.js";
 import { messageOf } from "./titles.js";
 
 /** @import { ReadonlySignal } from "@preact/signals" */
@@ -54,7 +55,7 @@ const originalIds = ({ config: { branch_from: branch } }) => (branch ? [branch.r
  * They may be older than those of the snapshot.
  */
 export const stageIds = computed(() => {
-  const all = [stage.value?.run_id, stage.value?.next_run_id, page.ghost.value];
+  const all = [playback.value?.run_id, playback.value?.next_run_id, page.ghost.value];
   const shown = all.filter((id) => id !== null && id !== undefined);
   return shown.flatMap((id) => {
     const run = runs.value.get(id);

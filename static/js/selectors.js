@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { disturbancesOf } from "./disturbances.js";
 import { features } from "./features.js";
-import { isActive } from "./narrative/states.js";
+import { isActive } from "./narrative/moment.js";
 import { options, role, runs } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */

@@ -1,15 +1,18 @@
 // The server's state as signals. Written by the events of its stream, and by answers to requests that no event has
 // overtaken.
 import { batch, computed, effect, signal } from "@preact/signals";
-import { addressOf, getOptions, RequestError } from "./api.js";
+import { getOptions, RequestError } from "./api.js";
+import { ServerClock } from "./events.js";
+import { page } from "./page-state.js";
 import { options } from "./settings.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { DamagedRun, Evaluation, EventBodies, Rates, Run, Scene, Stage } from "./types.js" */
+/** @import { Connection } from "./events.js" */
+/** @import { DamagedRun, Evaluation, EventBodies, Playhead, Rates, Run, Scene, Stage } from "./types.js" */
 
 export { options, served } from "./settings.js";
 
-/** @type {Signal<"connecting" | "live" | "reconnecting">} */
+/** @type {Signal<Connection>} */
 export const connection = signal("connecting");
 /** Whether the server is not heard: all that is known is what was heard last. */
 export const isAway = computed(() => connection.value === "reconnecting");
@@ -28,17 +31,16 @@ export const runs = signal(new Map());
 /** Runs that the server cannot read, by id: listed, and can be deleted. @type {Signal<Map<string, DamagedRun>>} */
 export const damagedRuns = signal(new Map());
 /** The stage that all pages share, as GET /stage has it. @type {Signal<Stage | null>} */
-export const commonStage = signal(null);
-/** Its moment, updated about five times a second. @type {Signal<Scene | null>} */
-const commonScene = signal(null);
-/** The page's own stage while it plays a run by itself, shaped as the common one. @type {Signal<Stage | null>} */
-export const ownStage = signal(null);
+export const stage = signal(null);
+/** Where its picture is: the newest that was told. @type {Signal<Playhead | null>} */
+export const playhead = signal(null);
+/** The frames of the stage that were pushed last. @type {Signal<EventBodies["piece"] | null>} */
+export const newestPiece = signal(null);
+/** The moment that this page shows, of the stage or of its own replay: several times a second. */
 /** @type {Signal<Scene | null>} */
-export const ownScene = signal(null);
-/** The stage of this page: its own, or else the common one. */
-export const stage = computed(() => ownStage.value ?? commonStage.value);
-/** The moment that this page shows; null while its own replay has none yet. */
-export const scene = computed(() => (ownStage.value ? ownScene.value : commonScene.value));
+export const scene = signal(null);
+/** The clock by which the playhead moves. */
+export const serverClock = new ServerClock();
 /** Run id → evaluations received while the page was open. @type {Signal<Record<string, Evaluation[]>>} */
 export const evaluations = signal({});
 /** Run id → greedy's distance on the same robot [m]. @type {Signal<Record<string, number>>} */
@@ -75,9 +77,10 @@ const goneIds = signal(/** @type {Set<string>} */ (new Set()));
 /** Whether there is no such run, or none any more. @param {string} id */
 export const isGone = (id) => goneIds.value.has(id);
 
-/** Those of features are added to them. @type {{ [Name in keyof EventBodies]?: (data: EventBodies[Name]) => void }} */
+/** Those of features are added to them. */
+/** @type {{ [Name in keyof EventBodies]?: (data: EventBodies[Name], isContinued: boolean) => void }} */
 const handlers = {
-  snapshot(data) {
+  snapshot(data, isContinued) {
     // It tells of the stage and of the newest runs; an answer about an older run is still news.
     newestEvents.set("stage", eventCount);
     for (const { id } of data.runs ?? []) newestEvents.set(id, eventCount);
@@ -85,12 +88,14 @@ const handlers = {
     role.value = data.role ?? "operator";
     viewers.value = data.viewers ?? null;
     robotsVersion.value = data.robots_version ?? 0;
-    runs.value = new Map();
-    damagedRuns.value = new Map();
+    forgetRuns(data.runs ?? [], isContinued);
     rates.value = {};
     (data.runs ?? []).forEach(upsertRun);
-    commonStage.value = data.stage ?? null;
-    commonScene.value = data.scene ?? null;
+    stage.value = data.stage ?? null;
+    playhead.value = null;
+    if (data.stage) takePlayhead(data.stage, true);
+    // What a replay of this page's own shows is not the stage's.
+    if (page.run.peek() === null) scene.value = data.scene ?? null;
   },
   run(data) {
     newestEvents.set(data.id, eventCount);
@@ -113,12 +118,45 @@ const handlers = {
     setEntry(rates, run_id, { ...rates.value[run_id], ...settings, ...pace }),
   stage(data) {
     newestEvents.set("stage", eventCount);
-    commonStage.value = data;
+    stage.value = data;
+    takePlayhead(data);
   },
+  piece(data) {
+    takePlayhead(data);
+    newestPiece.value = data;
+  },
+  clock: ({ sent_s }) => serverClock.note(sent_s, performance.now() / 1000),
   viewers: (data) => (viewers.value = data.count),
   robots: (data) => (robotsVersion.value = data.version),
-  scene: (data) => (commonScene.value = data),
 };
+
+/** When the newest playhead was told [s of the server's clock]. */
+let playheadSent_s = -Infinity;
+
+/**
+ * Take where the picture of the stage is, unless something newer has told of it, and the server's clock.
+ * @param {{ sent_s: number, playhead: Playhead }} message
+ * @param {boolean} [isFirst] whether the server may have been started anew since the message before
+ */
+function takePlayhead({ sent_s, playhead: newest }, isFirst = false) {
+  serverClock.note(sent_s, performance.now() / 1000, isFirst);
+  if (!isFirst && sent_s < playheadSent_s) return;
+  playheadSent_s = sent_s;
+  playhead.value = newest;
+}
+
+/**
+ * Forget the runs that a snapshot replaces: all, or while the connection has held those that are not older than its.
+ * @param {{ id: string }[]} newest
+ * @param {boolean} isContinued
+ */
+function forgetRuns(newest, isContinued) {
+  // Ids sort by the time of creation; of older runs a snapshot does not tell.
+  const oldest = newest.map(({ id }) => id).sort()[0] ?? "";
+  const isKept = (/** @type {[string, unknown]} */ [id]) => isContinued && id < oldest;
+  runs.value = new Map([...runs.peek()].filter(isKept));
+  damagedRuns.value = new Map([...damagedRuns.peek()].filter(isKept));
+}
 
 /** The names of the events that are applied. */
 export const eventNames = () => Object.keys(handlers);
@@ -130,11 +168,12 @@ export const addHandlers = (more) => { Object.assign(handlers, more); };
  * Apply a server-sent event. Unknown names are ignored.
  * @param {string} name
  * @param {unknown} data
+ * @param {boolean} [isContinued] of a snapshot, whether the connection has held since the one before
  */
-export const applyEvent = (name, data) =>
+export const applyEvent = (name, data, isContinued = false) =>
   batch(() => {
     eventCount += 1;
-    /** @type {Record<string, (data: unknown) => void>} */ (handlers)[name]?.(data);
+    /** @type {Record<string, (data: unknown, isContinued: boolean) => void>} */ (handlers)[name]?.(data, isContinued);
   });
 
 /**
@@ -178,7 +217,11 @@ export async function requestRuns(send) {
  */
 export async function requestStage(send) {
   const { answer, isNews } = await perform(send);
-  if (answer && isNews("stage")) commonStage.value = answer;
+  if (!answer || !isNews("stage")) return;
+  batch(() => {
+    stage.value = answer;
+    takePlayhead(answer);
+  });
 }
 
 /**
@@ -217,66 +260,6 @@ function without(map, key) {
   const left = new Map(map);
   left.delete(key);
   return left;
-}
-
-// ---- the stream of server-sent events
-
-const FIRST_WAIT_MS = 500;
-const LONGEST_WAIT_MS = 8000;
-
-/**
- * Open the stream, and open it again after every break with exponential back-off.
- * @param {string[]} names of events that are wanted
- * @param {(name: string, data: any) => void} onEvent
- * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
- * @param {string} [address] of the stream; that of the page's own stage without one
- * @returns {() => void} closes it for good
- */
-export function openEvents(names, onEvent, onState, address = addressOf("events")) {
-  /** @type {EventSource | null} */
-  let source = null;
-  let wait = FIRST_WAIT_MS;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
-
-  const open = () => {
-    clearTimeout(timer);
-    source?.close();
-    const opened = new EventSource(address);
-    source = opened;
-    for (const name of names) {
-      opened.addEventListener(name, ({ data }) => {
-        if (name === "snapshot") {
-          wait = FIRST_WAIT_MS;
-          onState("live");
-        }
-        onEvent(name, JSON.parse(data));
-      });
-    }
-    opened.onerror = () => {
-      // The browser's own retry gives up on some answers.
-      opened.close();
-      onState("reconnecting");
-      timer = setTimeout(open, wait);
-      wait = Math.min(2 * wait, LONGEST_WAIT_MS);
-    };
-  };
-
-  let isOver = false;
-  const openNow = () => {
-    if (!isOver && source?.readyState === EventSource.CLOSED) open();
-  };
-  addEventListener("online", openNow);
-  document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) openNow();
-  });
-  onState("connecting");
-  open();
-  return () => {
-    isOver = true;
-    clearTimeout(timer);
-    source?.close();
-  };
 }
 
 // ---- the options of all forms: asked for until they come, and again when stored robots have changed since

@@ -5,13 +5,12 @@ import { curve, rateChanges, rateInWords } from "./training.js";
 import { disturbancesOf, inWords } from "./disturbances.js";
 import { metres, SAME_MOMENT_S, sentence, whole } from "./format.js";
 import { canPlay, clock, isStale, raceScene, shownRun } from "./on-stage.js";
-import { page } from "./page-state.js";
 import { timeline } from "./race.js";
-import { endTime, openReplay, plan, playReplay, replayTime } from "./replay.js";
+import { isCutAtTimeOut, isOwn, openReplay, playReplay, position } from "./player.js";
 import { stepEnds } from "./narrative/moment.js";
 import { isActive } from "./selectors.js";
 import { agentOf, laneTitle } from "./settings.js";
-import { ownStage, scene, stage } from "./store.js";
+import { scene } from "./store.js";
 
 /** @import { ReadonlySignal } from "@preact/signals" */
 /** @import { Run, TimelineLane } from "./types.js" */
@@ -38,9 +37,6 @@ export const scale = computed(() => {
   return run.kind === "training" ? ofPractice(run, isComputing) : ofRace(isComputing);
 });
 
-/** The position of this page's own replay, else that of the stage [s of the run's time]. */
-const time_s = () => (ownStage.value ? replayTime.value : scene.value?.time_s ?? 0);
-
 /** @param {Run} run @param {boolean} isComputing @returns {Scale | null} */
 function ofPractice(run, isComputing) {
   const { duration_s = null, computed_s = 0 } = scene.value ?? {};
@@ -50,7 +46,7 @@ function ofPractice(run, isComputing) {
   // Of one that has ended there is what is recorded: a crash loses the last of the steps that were done.
   const stepsMade = isComputing ? run.progress.done : Math.round(computed_s / unit_s);
   const end = isComputing ? steps : Math.max(stepsMade, 1);
-  const picture = Math.min(time_s() / unit_s, stepsMade);
+  const picture = Math.min(position.value / unit_s, stepsMade);
   return { unit: "step", unit_s, end, picture, computed: stepsMade, isComputing };
 }
 
@@ -58,9 +54,9 @@ function ofPractice(run, isComputing) {
 function ofRace(isComputing) {
   const { duration_s = null, computed_s = 0, time_out_s = null } = scene.value ?? {};
   const whole_s = duration_s ?? Math.max(AHEAD * computed_s, FIRST_VIEW_S);
-  const isCut = ownStage.value ? plan.value !== null && endTime.value < whole_s : stage.value?.end_at_time_out;
-  const picture = time_s();
-  const end = isCut && time_out_s !== null && picture <= time_out_s + SAME_MOMENT_S ? time_out_s : whole_s;
+  const picture = position.value;
+  const isAtTimeOut = isCutAtTimeOut.value && time_out_s !== null && picture <= time_out_s + SAME_MOMENT_S;
+  const end = isAtTimeOut ? time_out_s : whole_s;
   return { unit: "s", unit_s: 1, end, picture, computed: Math.min(computed_s, end), isComputing };
 }
 
@@ -211,8 +207,8 @@ export function toggleTime() {
   const run = shownRun.peek();
   if (isStale.peek()) return;
   if (canPlay.peek()) togglePlaying();
-  else if (run && page.run.peek() === null) {
-    openReplay(run.id, { time_s: scene.peek()?.time_s ?? 0, clock: clock.peek(), isPlaying: false });
+  else if (run && !isOwn.peek()) {
+    openReplay(run.id, { time_s: position.peek(), clock: clock.peek(), isPlaying: false });
   } else playReplay(true);
 }
 

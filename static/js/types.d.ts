@@ -47,6 +47,7 @@ export type {
   OptionsView as Options,
   Person,
   PooledView,
+  Playhead,
   Preview,
   ReplayMark,
   ReplayView as ReplayPlan,
@@ -99,11 +100,13 @@ export type Kind = AnyRun["kind"];
 export type State = AnyRun["state"];
 export type Verb = "stop" | "pause" | "resume";
 export type Clock = Api.TimelineView["clock"];
-/** What this page needs of the stage that all share, and has of its own. */
-export type Stage = Pick<
-  Api.StageView,
-  "run_id" | "next_run_id" | "phase" | "origin" | "playing" | "ended" | "speed" | "clock" | "end_at_time_out" | "announced"
-> & Partial<Pick<Api.StageView, "presentation">>;
+/** The stage that all pages share. */
+export type Stage = Api.StageView;
+/** What is played, and how: the stage, or a replay of this page's own. */
+export type Playback = Pick<
+  Stage,
+  "next_run_id" | "phase" | "origin" | "playing" | "ended" | "speed" | "clock" | "end_at_time_out" | "announced" | "run_id"
+>;
 export type Presentation = Api.PresentationView;
 /** A timeline, with the id of its race. */
 export type Timeline = Api.TimelineView & { id: string };

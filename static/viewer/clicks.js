@@ -17,14 +17,6 @@
     .map(({ name }) => ({ type: "SetSceneNodeClickBindingsMessage", name, bindings: BINDINGS, owner: "" }));
 
   window.Worker = class extends Worker {
-    constructor(...args) {
-      super(...args);
-      // Before the client's own listener, which gets the same object.
-      this.addEventListener("message", ({ data }) => {
-        if (data?.type === "message_batch") data.messages.push(...bindingsOf(data.messages));
-      });
-    }
-
     postMessage(message, ...rest) {
       const { type, name, instance_index } = message?.message ?? {};
       if (message?.type !== "send" || type !== "SceneNodeClickMessage") return super.postMessage(message, ...rest);

@@ -4,7 +4,7 @@
 //
 //   events   hexapods:show {lanes?: colours of the lanes, covered?: [{left, top, right, bottom}], what is shown over
 //            the picture, in pixels of it}
-//            hexapods:draw {messages: of viser, which are drawn instead of the stream's}
+//            hexapods:draw {messages: of viser}
 (() => {
   "use strict";
 
@@ -21,7 +21,7 @@
   layer.className = "labels";
   layer.ariaHidden = "true";
 
-  // ---- the labels, taken out of viser's stream: there they are empty
+  // ---- the labels, taken out of viser's messages: there they are empty
 
   const take = (message) => {
     const { type, name } = message;
@@ -68,18 +68,7 @@
     if (lane && lanes[lane]) element.style.setProperty("--agent", lanes[lane]);
   };
 
-  window.Worker = class extends Worker {
-    constructor(...args) {
-      super(...args);
-      // Before the client's own listener, which gets the same objects.
-      this.addEventListener("message", ({ data }) => {
-        if (data?.type === "connected") [...labels.keys()].forEach(remove);
-        if (data?.type === "message_batch") data.messages.forEach(take);
-      });
-    }
-  };
-
-  // ---- messages that a page draws by itself come by the client's queue
+  // ---- messages that the page draws come by the client's queue
 
   let client;
   /** Drawn before the client has a queue: nobody sends them again. */

@@ -56,16 +56,6 @@
     }
   };
 
-  window.Worker = class extends Worker {
-    constructor(...args) {
-      super(...args);
-      // Before the client's own listener, which gets the same objects.
-      this.addEventListener("message", ({ data }) => {
-        if (data?.type === "connected") batches.clear();
-        if (data?.type === "message_batch") data.messages.forEach(take);
-      });
-    }
-  };
   addEventListener("hexapods:draw", ({ detail }) => detail.messages.forEach(take));
 
   // ---- projection

@@ -21,7 +21,7 @@ RACE = {
 
 def shown_time(page: Page) -> float:
     time_s: float = page.evaluate(
-        "async () => (await import('./static/js/replay.js')).replayTime.value"
+        "async () => (await import('./static/js/player.js')).position.value"
     )
     return time_s
 

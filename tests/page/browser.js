@@ -8,7 +8,9 @@ export const entries = ["/"];
 Object.assign(globalThis, {
   addEventListener: (/** @type {string} */ type, /** @type {() => void} */ listener) =>
     listeners.push([type, listener]),
-  document: { baseURI: "http://page.test/", documentElement: { dataset: {} } },
+  document: {
+    baseURI: "http://page.test/", documentElement: { dataset: {} }, hidden: false, addEventListener: () => {},
+  },
   history: {
     state: null,
     replaceState: (/** @type {unknown} */ _state, /** @type {string} */ _title, /** @type {string} */ address) => {

@@ -283,7 +283,8 @@ export function makeRun(changes) {
 export const makeStage = (changes = {}) => /** @type {Stage} */ ({
   run_id: null, next_run_id: null, holder: null, phase: "empty", origin: "none", playing: true, ended: false,
   speed: "time-lapse", clock: "paper", end_at_time_out: true, announced: null,
-  presentation: { card: null, shows_why: false, is_blank: false, code: "large" }, ...changes,
+  presentation: { card: null, shows_why: false, is_blank: false, code: "large" }, sent_s: 0, version: "1",
+  playhead: { at_s: 0, points: [[0, 0]], rate: 0, computed_s: 0, duration_s: null, time_out_s: null }, ...changes,
 });
 
 /**

@@ -5,7 +5,7 @@ import { copySettings, secondaryActions } from "../../static/js/actions.js";
 import { changesInWords, configAtEnd, curve, presentRates, rateChanges } from "../../static/js/training.js";
 import { form, setFields } from "../../static/js/form.js";
 import { page } from "../../static/js/page-state.js";
-import { applyEvent, options, rates, runs } from "../../static/js/store.js";
+import { applyEvent, options, rates, runs, scene } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, ended: false, speed: 1, clock: "paper" };
@@ -54,7 +54,7 @@ test("the curve marks changes at their steps of all practice, once they are on s
   });
   applyEvent("snapshot", { runs: [first, second], stage: { ...STAGE, run_id: second.id }, scene: null });
   const lanes = [{ step: 100, steps_made: 99 }];
-  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes });
+  scene.value = /** @type {any} */ ({ run_id: second.id, kind: "training", phase: "practice", lanes });
   assert.deepEqual(curve.value?.changes.map(({ name, step }) => [name, step]),
     [["alpha", 136], ["epsilon", 200], ["gamma", 510]]);
 });

@@ -1,7 +1,7 @@
 // The legs in the picture: whose are numbered, and which one is picked.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { closeLegs, legPoints, legsAreOpen, legsOf, openLegs, picked, pickLeg } from "../../static/js/legs.js";
+import { closeLegs, legPoints, legsAreOpen, legsOf, openLegs, picked, pickLeg } from "../../static/js/page.js";
 import { page } from "../../static/js/page-state.js";
 import { applyEvent } from "../../static/js/store.js";
 import { makeSceneLane, makeStage } from "./options.js";

@@ -7,7 +7,7 @@ import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { metres } from "../../static/js/format.js";
 import { narrativeOf } from "../../static/js/narrative/narrative.js";
-import { isShownToEnd } from "../../static/js/narrative/states.js";
+import { isShownToEnd } from "../../static/js/narrative/moment.js";
 import { OPTIONS } from "./options.js";
 
 /** @type {any[]} */

@@ -5,15 +5,13 @@ import {
   interruptedRun, isPlaying, offStage, progress, resumableOnStage, steering, windowTitle,
 } from "../../static/js/on-stage.js";
 import { markAsMine } from "../../static/js/selectors.js";
-import { applyEvent, connection, isLockedOut, options, ownStage } from "../../static/js/store.js";
+import { page } from "../../static/js/page-state.js";
+import { applyEvent, connection, isLockedOut, options } from "../../static/js/store.js";
 import { makeRun, makeStage, OPTIONS } from "./options.js";
 
 /** @import { Run } from "../../static/js/types.js" */
 
-const STAGE = {
-  run_id: null, next_run_id: null, phase: "empty", origin: "none", playing: true, ended: false, speed: "time-lapse",
-  clock: "paper", end_at_time_out: true, announced: null,
-};
+const STAGE = makeStage();
 
 /** Put a run on stage, whose first lane is at a step. @type {(run: Run, step: number, stage?: object) => object} */
 const showing = (run, step, stage = {}) => ({
@@ -119,7 +117,7 @@ test("while the server is away nothing is said to go on: of work the last that i
   snapshot([ended], showing(ended, 25, { phase: "showing" }));
   assert.equal(progress.value, null);
   // A replay of the page's own goes on with what is loaded.
-  ownStage.value = makeStage({ run_id: ended.id, phase: "showing" });
+  page.run.value = ended.id;
   assert.equal(isPlaying.value, true);
-  ownStage.value = null;
+  page.run.value = null;
 });

@@ -15,9 +15,9 @@ import {
   applyEvent, damagedRuns, evaluations, isGone, markGone, options, rates, requestRun, requestRuns, requestStage,
   role, runs, stage,
 } from "../../static/js/store.js";
-import { makeRun, OPTIONS } from "./options.js";
+import { makeRun, makeStage, OPTIONS } from "./options.js";
 
-const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
+const STAGE = makeStage({ speed: 1 });
 
 /** @param {{ runs?: object[], stage?: object }} parts */
 const show = (parts) => applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator", ...parts });

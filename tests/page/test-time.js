@@ -3,24 +3,27 @@ import assert from "node:assert/strict";
 import { afterEach, beforeEach, test } from "node:test";
 import { page } from "../../static/js/page-state.js";
 import { followTimeline } from "../../static/js/race.js";
-import { closeReplay } from "../../static/js/replay.js";
+import { closeReplay, followPlayer } from "../../static/js/player.js";
 import { stepEnds } from "../../static/js/narrative/moment.js";
-import { applyEvent, commonStage, connection, options } from "../../static/js/store.js";
+import { applyEvent, connection, options, stage } from "../../static/js/store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, seekToMark, timeAtDistance, toggleTime,
 } from "../../static/js/time.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
-/** @import { Run, TimelinePoint } from "../../static/js/types.js" */
+/** @import { Playhead, Run, TimelinePoint } from "../../static/js/types.js" */
 
 /** What was asked of the server: the method, the end of the address and the body. @type {unknown[][]} */
 let requests = [];
 /** The timeline that it has. */
 const TIMELINE = { clock: "paper", finish_line_m: 0.45, first_finish_s: 16, lanes: /** @type {object[]} */ ([]) };
 globalThis.fetch = (address, { method = "GET", body = null } = {}) => {
-  const [last] = new URL(String(address)).pathname.split("/").slice(-1);
+  const { pathname } = new URL(String(address));
+  // Pictures do not come.
+  if (pathname.includes("/replay") || pathname.endsWith("/start-line")) return new Promise(() => {});
+  const [last] = pathname.split("/").slice(-1);
   if (method !== "GET") requests.push([method, last, JSON.parse(String(body))]);
-  const answer = last === "timeline" ? TIMELINE : commonStage.value;
+  const answer = last === "timeline" ? TIMELINE : stage.value;
   return Promise.resolve(new Response(JSON.stringify(answer)));
 };
 globalThis.requestAnimationFrame = () => 0;
@@ -45,14 +48,18 @@ const TRACK = {
  * Show a run: how far it is, and how far the picture is.
  * @type {(run: Run, scene: object, rest?: { role?: string, stage?: object }) => void}
  */
-const show = (run, scene, { role = "operator", stage = {} } = {}) => applyEvent("snapshot", {
-  role, runs: [run], stage: makeStage({ run_id: run.id, phase: "showing", ...stage }),
+const show = (run, scene, { role = "operator", stage: changes = {} } = {}) => applyEvent("snapshot", {
+  role, runs: [run],
+  stage: makeStage({ run_id: run.id, phase: "showing", playhead: heldAt({ ...TIMES, ...scene }), ...changes }),
   scene: {
-    run_id: run.id, kind: run.kind, label: "", phase: run.kind === "race" ? "race" : "practice", time_s: 0,
-    duration_s: null, computed_s: 0, time_out_s: null, ended: false, shown_speed: 1, action_values: null,
-    lanes: [makeSceneLane()], ...scene,
+    run_id: run.id, kind: run.kind, label: "", phase: run.kind === "race" ? "race" : "practice", ...TIMES, ended: false,
+    shown_speed: 1, action_values: null, lanes: [makeSceneLane()], ...scene,
   },
 });
+const TIMES = { time_s: 0, duration_s: null, computed_s: 0, time_out_s: null };
+/** @type {(times: typeof TIMES) => Playhead} */
+const heldAt = ({ time_s, ...known }) => ({ at_s: 0, points: [[0, time_s]], rate: 0, ...known });
+followPlayer();
 
 /** @param {object} [changes] */
 const makeRace = (changes = {}) => makeRun({
@@ -235,13 +242,17 @@ test("the next mark is that after the picture, and tests are no stops", async ()
 });
 
 test("who may not play the stage plays a replay of their own, from the same moment", () => {
-  show(makeRace(), { time_s: 2, duration_s: 4, computed_s: 4 }, { role: "spectator" });
+  const race = makeRace();
+  const showRace = () => show(race, { time_s: 2, duration_s: 4, computed_s: 4 }, { role: "spectator" });
+  showRace();
   toggleTime();
   assert.deepEqual([page.moment.value, page.run.value !== null], [2, true], "it is held");
   closeReplay();
+  showRace();
   seekTo(3);
   assert.deepEqual([page.moment.value, page.run.value !== null], [null, true], "it plays");
   closeReplay();
+  showRace();
   connection.value = "reconnecting";
   toggleTime();
   seekTo(3);

@@ -1,7 +1,7 @@
 // The training in view: its learning curve, and the learner's next move.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { applyEvent, options } from "../../static/js/store.js";
+import { applyEvent, options, scene } from "../../static/js/store.js";
 import { bestMove, curve, cellName, practisedSteps } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -22,7 +22,7 @@ test("the learning curve joins the trainings that continue each other, up to the
   evaluate(second.id, 20);
   evaluate(second.id, 40);
   const lanes = [{ step: 30, steps_made: 29 }];
-  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes });
+  scene.value = /** @type {any} */ ({ run_id: second.id, kind: "training", phase: "practice", lanes });
   assert.deepEqual(curve.value?.points.map(({ step }) => step), [0, 50, 120]);
   assert.deepEqual([curve.value?.blocks, curve.value?.to, curve.value?.greedy_m], [[100], 200, 0.5]);
   assert.equal(practisedSteps(second), 140);

@@ -54,7 +54,7 @@ Assumed by `client`:
   and in the sorter of Gaussian splats, of which the stage has none.
 - worker_connects: the client connects by posting `set_server` to its worker, which opens no socket
   before; it takes `connected` for an empty scene, and shows it after a `message_batch` with
-  `ReplayDoneMessage`, so that `static/viewer/offline.js` can do without a server.
+  `ReplayDoneMessage`, so that `static/viewer/client.js` can do without a server.
 - controls_have_these_selectors: `static/viewer/patch.css` hides viser's controls by attributes and
   class names of its page.
 - labels_are_taken_out: the client draws the messages in `messageQueue` of `__viserMutable`, to

@@ -3,10 +3,10 @@
 import { batch, computed, effect, untracked } from "@preact/signals";
 import { call } from "../../js/api.js";
 import { page } from "../../js/page-state.js";
-import { openReplay, setReplaySpeed } from "../../js/replay.js";
+import { openReplay, playback, setReplaySpeed } from "../../js/player.js";
 import { followRuns } from "../../js/runs.js";
 import { isActive, isKnown, ownRuns, runOf, trainingIds } from "../../js/selectors.js";
-import { connection, ownStage } from "../../js/store.js";
+import { connection } from "../../js/store.js";
 import { allowance, followed, isVisitor, visitorRuns } from "./feature.js";
 
 /** @import { Run } from "../../js/types.js" */
@@ -84,7 +84,7 @@ function showFollowed() {
     followed.value = null; // another run was chosen, or the common stage
     return;
   }
-  const isAtEnd = ownStage.value?.run_id === opened && ownStage.value?.ended;
+  const isAtEnd = page.run.value === opened && playback.value?.ended;
   if (opened !== null && !isAtEnd) return;
   const runs = shownInOrder(run);
   const next = runs[runs.findIndex(({ id }) => id === opened) + 1];

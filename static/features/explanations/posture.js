@@ -2,9 +2,8 @@
 // in the 3D view; one on a foot grid in the 3D view chooses the present state and that move.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplayFrames, keepAnswer } from "../../js/api.js";
-import { page } from "../../js/page-state.js";
 import { clickedCell, drawHere } from "../../js/page.js";
-import { plan } from "../../js/replay.js";
+import { sceneCount } from "../../js/picture.js";
 import { decode } from "../../js/replay-frames.js";
 import { clock, conditionsShown } from "../../js/on-stage.js";
 import { chosenLane, explanation, followStage, stageMoment } from "./steps.js";
@@ -88,12 +87,12 @@ function giveUpElsewhere() {
   if (chosen && (at?.run_id !== chosen.run_id || at.lane !== chosen.lane)) giveUpState();
 }
 
-/** A scene that begins anew has no ghost: of the stage, or of a replay of this page's own. */
+/** A scene that begins anew has no ghost. */
 function followView() {
   /** @type {unknown[]} */
   let before = [];
   return effect(() => {
-    const now = [drawHere.value, page.run.value, plan.value === null];
+    const now = [drawHere.value, sceneCount.value];
     if (now.some((cell, number) => cell !== before[number])) giveUpState();
     before = now;
   });

@@ -8,7 +8,8 @@ import { shownTime, timeline } from "../../js/race.js";
 import { timeSpent } from "../../js/narrative/moment.js";
 import { canPlay, raceInView, shownRun } from "../../js/on-stage.js";
 import { limitsOf } from "../../js/settings.js";
-import { connection, options, scene, stage } from "../../js/store.js";
+import { playback } from "../../js/player.js";
+import { connection, options, scene } from "../../js/store.js";
 import { messageOf } from "../../js/titles.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -100,7 +101,7 @@ export const raceTimeAt = ({ thinking }, walked) =>
 /** Whether this page may choose the moment that is shown. */
 export const canSeek = computed(() => {
   const about = subject.value;
-  return canPlay.value && stage.value?.run_id === about?.run.id && about?.part !== "evaluation";
+  return canPlay.value && playback.value?.run_id === about?.run.id && about?.part !== "evaluation";
 });
 
 /**

@@ -6,7 +6,7 @@ import { deck } from "../../js/features.js";
 import { change, page } from "../../js/page-state.js";
 import { isTimedOut } from "../../js/race.js";
 import { isOperator } from "../../js/selectors.js";
-import { commonStage } from "../../js/store.js";
+import { stage } from "../../js/store.js";
 import { explainingTab } from "../../js/workspace.js";
 
 /** @import { PageState } from "../../js/page-state.js" */
@@ -17,7 +17,7 @@ const NOTHING = { card: null, shows_why: false, is_blank: false, code: "large" }
 /** Sizes of the QR code, in the order of its key. @type {Presentation["code"][]} */
 export const CODES = ["large", "small", "none"];
 
-export const presentation = computed(() => commonStage.value?.presentation ?? NOTHING);
+export const presentation = computed(() => stage.value?.presentation ?? NOTHING);
 
 /** Change the presentation for every presenter's window. @param {Partial<Presentation>} changes */
 export const tell = (changes) => {

@@ -4,7 +4,7 @@ import { deck } from "../../js/features.js";
 import { isPlaying } from "../../js/on-stage.js";
 import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "./presentation.js";
 import { page } from "../../js/page-state.js";
-import { commonStage } from "../../js/store.js";
+import { stage } from "../../js/store.js";
 import { html, Icon, Segments } from "../../js/components/elements.js";
 import { Problem } from "../../js/components/foot.js";
 
@@ -13,7 +13,7 @@ export function Remote() {
   const { cards } = deck.value;
   const shown = card === null ? null : cards.value[card - 1];
   const next = cards.value[card ?? 0];
-  const endsAtTimeOut = commonStage.value?.end_at_time_out ?? true;
+  const endsAtTimeOut = stage.value?.end_at_time_out ?? true;
   return html`
     <section class="remote" aria-label="Remote of the presentation">
       <h2>${shown ? `${card}. ${shown.title}` : "No card is shown"}</h2>

@@ -4,7 +4,8 @@ import { addressOf, getOptions } from "../../js/api.js";
 import { goTo, ownAddress } from "../../js/page-state.js";
 import { makeRequests } from "../../js/requests.js";
 import { debounce } from "../../js/debounce.js";
-import { connection, openEvents, options } from "../../js/store.js";
+import { openEvents } from "../../js/events.js";
+import { connection, options } from "../../js/store.js";
 import * as api from "./api.js";
 import { entryInWords, nameOf, shortened } from "./words.js";
 
@@ -132,7 +133,7 @@ export async function follow() {
       connection.value = "live";
       return undefined;
     }
-    return openEvents(["snapshot", "tournament", "room"], onEvent, onState, stream.value);
+    return openEvents(["snapshot", "tournament", "room"], onEvent, onState, () => stream.peek());
   });
 }
 

@@ -8,7 +8,7 @@ import { isLoser, isOver, isTimedOut, standings } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isProjected } from "../page.js";
-import { earlyEndOf } from "../narrative/states.js";
+import { earlyEndOf } from "../narrative/moment.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";
@@ -17,8 +17,7 @@ import { practisedSteps } from "../training.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon } from "./elements.js";
 import { Loaded, Slot } from "../features.js";
-import { LearningChart } from "./learning.js";
-import { RaceChart } from "./race-chart.js";
+import { LearningChart, RaceChart } from "./run-charts.js";
 
 /** @import { Standing } from "../race.js" */
 /** @import { Changed, Clock, LaneConfig } from "../types.js" */

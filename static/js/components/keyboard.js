@@ -2,9 +2,8 @@
 import { runPrimaryAction, togglePause } from "../actions.js";
 import { actionOfKey } from "../features.js";
 import { page } from "../page-state.js";
-import { helpIsOpen, shortcuts } from "../page.js";
-import { stepReplay } from "../replay.js";
-import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
+import { closeLegs, helpIsOpen, legsAreOpen, openLegs, shortcuts } from "../page.js";
+import { isOwn, stepReplay } from "../player.js";
 import { isOperator } from "../selectors.js";
 import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
 import { isAtLeast, nextDepth, openExplanation, toggleHidden } from "../workspace.js";
@@ -20,8 +19,8 @@ const RACE_KEYS = {
   " ": () => (isOperator.value ? togglePause : toggleTime)(),
   "r": runPrimaryAction,
   "0": () => (page.camera.value = "free"),
-  ",": () => page.run.value !== null && stepReplay(-1),
-  ".": () => page.run.value !== null && stepReplay(1),
+  ",": () => isOwn.value && stepReplay(-1),
+  ".": () => isOwn.value && stepReplay(1),
   "[": () => seekToMark(-1),
   "]": () => seekToMark(1),
   "Home": () => seekTo(0),

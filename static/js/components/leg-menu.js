@@ -2,7 +2,7 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { branchRace, pending } from "../actions.js";
 import { chosenWith, conditionsAt, conditionsNow, disturbancesOf, kindNamed, pressed } from "../disturbances.js";
-import { closeLegs, legPoints, legsOf, picked, pickLeg } from "../legs.js";
+import { closeLegs, legPoints, legsOf, picked, pickLeg } from "../page.js";
 import { disturb } from "../live-changes.js";
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
@@ -16,7 +16,7 @@ import { Problem } from "./foot.js";
 import { firstWish, legKinds } from "./world-controls.js";
 
 /** @import { Disturbance, Run } from "../types.js" */
-/** @import { Pick } from "../legs.js" */
+/** @import { Pick } from "../page.js" */
 
 export const Legs = () => html`<${LegMarks} /><${LegMenu} />`;
 

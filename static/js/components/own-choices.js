@@ -1,11 +1,10 @@
 // What a spectator can do on their own page, while the stage goes on for all.
 import { downloads } from "../files.js";
 import { tryOwnSettings } from "../form.js";
-import { page } from "../page-state.js";
-import { closeReplay, openReplay } from "../replay.js";
+import { closeReplay, isOwn, openReplay, position } from "../player.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive, isWalk } from "../selectors.js";
-import { isAway, scene } from "../store.js";
+import { isAway } from "../store.js";
 import { html, Icon } from "./elements.js";
 import { Slot } from "../features.js";
 
@@ -16,10 +15,10 @@ export function OwnChoices() {
   const canReplay = run !== null && isWalk(run) && Boolean(run?.progress?.done);
   return html`
     <div class="own-choices">
-      ${page.run.value !== null && html`
+      ${isOwn.value && html`
         <button class="secondary compact" onClick=${closeReplay}>Back to the stage</button>
       `}
-      ${page.run.value === null && run && canReplay && html`
+      ${!isOwn.value && run && canReplay && html`
         <button class="secondary compact" disabled=${isAway.value} onClick=${() => replay(run)}
           title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
       `}
@@ -30,7 +29,7 @@ export function OwnChoices() {
 }
 
 /** @param {Run} run */
-const replay = (run) => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
+const replay = (run) => openReplay(run.id, { time_s: position.peek(), clock: clock.value });
 
 /** @param {{ run: Run }} props */
 const Files = ({ run }) => html`

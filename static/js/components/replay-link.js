@@ -1,6 +1,6 @@
 // A link to a replay, which opens on this page.
 import { addressOf } from "../page-state.js";
-import { openReplay } from "../replay.js";
+import { openReplay } from "../player.js";
 import { html } from "./elements.js";
 
 /** @import { ComponentChildren } from "preact" */

@@ -4,15 +4,15 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { narrative } from "../headline.js";
-import { page } from "../page-state.js";
-import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
-import { clickedCell, drawHere, isProjected, shownTheme } from "../page.js";
+import {
+  clickedCell, closeLegs, drawHere, isProjected, legPoints, legsAreOpen, legsOf, picked, shownTheme,
+} from "../page.js";
 import { isTimedOut } from "../race.js";
-import { closeReplay, drawIn, isBuffering, plan, replayProblem } from "../replay.js";
+import { closeReplay, drawIn, isBuffering, isOwn, plan, playback, replayProblem } from "../player.js";
 import { isDecided, isStale } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
-import { isAway, runs, scene, stage } from "../store.js";
+import { isAway, runs, scene } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon } from "./elements.js";
 import { Loaded } from "../features.js";
@@ -31,9 +31,8 @@ const laneColours = computed(() => (scene.value?.lanes ?? []).map(({ color }) =>
 export function Stage() {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
-  const followed = page.run.value === null ? page.camera.value : ELSEWHERE;
-  // The first address has both; later changes are sent to the frame, which must not load again.
-  const [address] = useState(() => `viewer/?view=${followed}&theme=${shownTheme.peek()}`);
+  // The first address has it; later changes are sent to the frame, which must not load again.
+  const [address] = useState(() => `viewer/?theme=${shownTheme.peek()}`);
 
   useFrame(frame, setStatus);
   // What was picked is of the run that was shown.
@@ -41,18 +40,18 @@ export function Stage() {
   const colours = laneColours.value;
   useEffect(() => {
     const message = {
-      type: "hexapods:show", view: followed, theme: shownTheme.value, lanes: colours.split(" "),
+      type: "hexapods:show", theme: shownTheme.value, lanes: colours.split(" "),
       covered: covered.value, isProjected: isProjected.value, legsOf: legsOf.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [followed, shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value]);
+  }, [shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value]);
 
-  const awayWords = awayInWords(status);
+  const awayWords = awayInWords();
   return html`
     <section class=${`stage ${awayWords && !isReplayed() ? "away" : ""}`} aria-label="Stage" data-status=${status}>
       <div class="picture">
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
-        ${(status === "loading" || isRefused(status)) && html`<${StagePlaceholder} status=${status} />`}
+        ${status === "loading" && html`<${StagePlaceholder} />`}
         <${StageLabels} />
         ${legsAreOpen.value && html`<${Loaded} name="legs" load=${loadLegs} />`}
         <${StageNotes} />
@@ -66,14 +65,13 @@ export function Stage() {
 }
 
 /** Whether a replay of this page's own is drawn, which goes on without the server as far as it is loaded. */
-const isReplayed = () => page.run.value !== null && plan.value !== null && !isBuffering.value;
+const isReplayed = () => isOwn.value && plan.value !== null && !isBuffering.value;
 
-/** What the picture is while the server is away, or the frame has lost its own connection. @param {string} status */
-function awayInWords(status) {
-  if (!isAway.value && (status !== "reconnecting" || isReplayed())) return "";
+/** What the picture is while the server is away. */
+function awayInWords() {
+  if (!isAway.value) return "";
   if (isReplayed()) return "Reconnecting. Your replay plays what is loaded.";
-  return page.run.value === null ? "Reconnecting. This is the last picture."
-    : "Reconnecting. Your replay waits.";
+  return isOwn.value ? "Reconnecting. Your replay waits." : "Reconnecting. This is the last picture.";
 }
 
 const loadLegs = () => import("./leg-menu.js").then(({ Legs }) => Legs);
@@ -124,9 +122,6 @@ function useFrame(frame, setStatus) {
 /** Those who try disturb what they click, but not on a page that is projected. */
 const canPick = () => isAtLeast("try") && !isProjected.peek();
 
-/** The view of the frame while this page draws a replay of its own. */
-const ELSEWHERE = "elsewhere";
-
 /** Why the run that a link names cannot be replayed. */
 const ReplayProblem = () => replayProblem.value && html`
   <div class="replay-problem" role="alert">
@@ -168,13 +163,13 @@ function EarlyEndNote() {
 
 /** At the photo finish, while other lanes still walk. */
 const DecidedNote = () => isDecided.value && !isStale.value && isAtLeast("try") && isOperator.value &&
-  page.run.value === null && stage.value?.end_at_time_out && html`
+  !isOwn.value && playback.value?.end_at_time_out && html`
     <button class="secondary compact" onClick=${keepWatching} title="Some robots still walk">Keep watching</button>
   `;
 
 /** The replay that begins by itself. */
 function AnnouncementNote() {
-  const announced = page.run.value === null && !isAway.value ? stage.value?.announced : null;
+  const announced = isAway.value ? null : playback.value?.announced ?? null;
   const [left, setLeft] = useState(0);
   useEffect(() => {
     if (!announced) return undefined;
@@ -186,7 +181,7 @@ function AnnouncementNote() {
   }, [announced]);
   if (!announced) return null;
   const name = runs.value.get(announced.run_id)?.name ?? "a race";
-  const what = announced.run_id === stage.value?.run_id ? "the same again" : `a replay of ${name}`;
+  const what = announced.run_id === playback.value?.run_id ? "the same again" : `a replay of ${name}`;
   return html`
     <div class="stage-note">
       <p role="status">Next: ${what}</p>
@@ -203,18 +198,6 @@ function AnnouncementNote() {
 const LANES_X = [-150, 0, 150];
 const LEGS = ["M-16 0-44-14-56 18", "M-10 6-34 0-42 34", "M-6 8-16 12-20 42"];
 
-const LOADING = "The robots walk to the start line…";
-const LATER = "The picture comes when there is room; numbers and charts are live.";
-/** Status of the frame that has no place → the reason. */
-/** @type {Record<string, string>} */
-const REFUSALS = {
-  "full": `Many are watching already. ${LATER}`,
-  "address full": `Many are watching from this network already. ${LATER}`,
-  "place taken": `Another viewer took this slot. ${LATER}`,
-};
-
-/** Whether a status of the frame says that it has no place. @param {string} status */
-const isRefused = (status) => status in REFUSALS;
 
 /** @param {{ x: number, color: string }} props */
 const Robot = ({ x, color }) => html`
@@ -225,8 +208,7 @@ const Robot = ({ x, color }) => html`
   </g>
 `;
 
-/** @param {{ status: string }} props */
-function StagePlaceholder({ status }) {
+function StagePlaceholder() {
   const robots = form.value.lanes.slice(0, LANES_X.length);
   return html`
     <div class="placeholder">
@@ -238,7 +220,7 @@ function StagePlaceholder({ status }) {
           ${robots.map((agent, lane) => html`<${Robot} x=${LANES_X[lane]} color=${agentOf(agent).color} />`)}
         </g>
       </svg>
-      <p>${REFUSALS[status] ?? LOADING}</p>
+      <p>The robots walk to the start line…</p>
     </div>
   `;
 }

@@ -5,10 +5,10 @@ import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone, isProjected } from "../page.js";
-import { closeReplay, openReplay, stepReplay } from "../replay.js";
+import { closeReplay, isOwn, openReplay, playback, position, stepReplay } from "../player.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { isOperator, isGuest } from "../selectors.js";
-import { isAway, scene, stage } from "../store.js";
+import { isAway, scene } from "../store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, toggleTime,
 } from "../time.js";
@@ -24,11 +24,10 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
 
 export function TimeBar() {
   const shownScale = scale.value;
-  const isOwn = page.run.value !== null;
   return html`
-    <div class=${`time-bar ${isOwn ? "own" : ""}`} role="group" aria-label="Time">
+    <div class=${`time-bar ${isOwn.value ? "own" : ""}`} role="group" aria-label="Time">
       ${shownScale && html`<${PlayButton} />`}
-      ${isOwn && shownScale && html`<${StepButtons} />`}
+      ${isOwn.value && shownScale && html`<${StepButtons} />`}
       ${shownScale ? html`<${Track} known=${shownScale} />` : html`<p class="dim no-time">${narrative.value.bar}</p>`}
       ${isOneLaneLeft(scene.value) && canPlay.value && !isStale.value && html`
         <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
@@ -36,7 +35,7 @@ export function TimeBar() {
         </button>
       `}
       ${shownScale && isAtLeast("try") && !isPhone.value && canPlay.value && html`<${EndAtTimeOut} /><${Speed} />`}
-      ${isOwn ? html`<${BackToStage} />` : shownScale && html`<${ReplayButton} />`}
+      ${isOwn.value ? html`<${BackToStage} />` : shownScale && html`<${ReplayButton} />`}
       <${Problem} at="stage" />
     </div>
   `;
@@ -45,7 +44,7 @@ export function TimeBar() {
 function PlayButton() {
   const { isPlaying, label } = narrative.value.play;
   return html`
-    <button class="play" disabled=${!stage.value?.run_id} aria-disabled=${isStale.value ? "true" : undefined}
+    <button class="play" disabled=${!playback.value?.run_id} aria-disabled=${isStale.value ? "true" : undefined}
       onClick=${toggleTime} aria-label=${label} title=${label}>
       <${Icon} name=${isPlaying ? "pause" : "play"} />
     </button>
@@ -58,7 +57,7 @@ function PlayButton() {
 function ReplayButton() {
   const run = shownRun.value;
   if (!run?.progress?.done || !(isAtLeast("try") || isPhone.value)) return null;
-  const open = () => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
+  const open = () => openReplay(run.id, { time_s: position.peek(), clock: clock.value });
   return html`
     <button class="quiet square" aria-label="Replay on this page" disabled=${isStale.value} onClick=${open}
       title="Replay: play and seek on this page only; the stage goes on for all">
@@ -108,7 +107,7 @@ function Track({ known }) {
     else seekTo(Number(target.value));
   };
   // The replay of this page's own follows the thumb; a stage that many watch is asked once.
-  const handlers = page.run.value !== null ? { onInput: seek } : { onChange: seek };
+  const handlers = isOwn.value ? { onInput: seek } : { onChange: seek };
   /** @param {KeyboardEvent} event */
   const press = (event) => {
     const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
@@ -125,7 +124,7 @@ function Track({ known }) {
         <input type="range" min="0" max=${end} step=${unit === "s" ? 0.01 : 1} value=${picture} onKeyDown=${press}
           ...${handlers}
           aria-disabled=${isStale.value ? "true" : undefined}
-          aria-label=${page.run.value === null ? "Moment that is shown" : "Moment of your replay"}
+          aria-label=${isOwn.value ? "Moment of your replay" : "Moment that is shown"}
           aria-valuetext=${`${positionInWords(known, picture)} of ${positionInWords(known, end)}${words}`} />
         ${isComputing && html`<i class="computed-end" style=${{ left: place(computed) }} aria-hidden="true"></i>`}
         <${Marks} place=${place} />
@@ -228,9 +227,8 @@ const isOneLaneLeft = (now) =>
 /** Whether the show of a race ends with its photo finish: its last robots may walk on for a minute. */
 function EndAtTimeOut() {
   if (scene.value?.kind !== "race" || scene.value.lanes.length < 2) return null;
-  const isOwn = page.run.value !== null;
-  const isOn = isOwn ? page.end.value === "time-out" : stage.value?.end_at_time_out ?? true;
-  const toggle = () => (isOwn ? (page.end.value = isOn ? "all" : "time-out") : endAtTimeOut(!isOn));
+  const isOn = playback.value?.end_at_time_out ?? true;
+  const toggle = () => (isOwn.value ? (page.end.value = isOn ? "all" : "time-out") : endAtTimeOut(!isOn));
   return html`
     <label class="switch" title="End with the photo finish, which settles the ranking">
       <input type="checkbox" role="switch" name="end_at_time_out" checked=${isOn}
@@ -241,16 +239,15 @@ function EndAtTimeOut() {
 }
 
 function Speed() {
-  const isOwn = page.run.value !== null;
-  const speed = stage.value?.speed ?? 1;
+  const speed = playback.value?.speed ?? 1;
   const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
   const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
-  const choices = [...(isOwn ? [] : [["time-lapse", "Auto"]]), ...numbers.map((n) => [n, `×${n}`])];
+  const choices = [...(isOwn.value ? [] : [["time-lapse", "Auto"]]), ...numbers.map((n) => [n, `×${n}`])];
   /** @param {Changed} event */
   const onChange = ({ target: { value } }) => setStage({ speed: value === "time-lapse" ? value : Number(value) });
   return html`
-    <select name="speed" aria-label="Speed" title=${isOwn ? "Speed on this page" : "Speed for every page"}
-      disabled=${!isOwn && (!isOperator.value || isAway.value)} onChange=${onChange}>
+    <select name="speed" aria-label="Speed" title=${isOwn.value ? "Speed on this page" : "Speed for every page"}
+      disabled=${!isOwn.value && (!isOperator.value || isAway.value)} onChange=${onChange}>
       ${choices.map(([choice, words]) => html`
         <option value=${String(choice)} selected=${String(choice) === String(speed)}>${words}</option>
       `)}

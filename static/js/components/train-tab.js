@@ -4,7 +4,7 @@ import { whole } from "../format.js";
 import { steering } from "../on-stage.js";
 import { html } from "./elements.js";
 import { Restricted } from "./fields.js";
-import { LearningChart } from "./learning.js";
+import { LearningChart } from "./run-charts.js";
 import { TrainSettings } from "./settings.js";
 
 export function TrainTab() {

@@ -1,8 +1,7 @@
 // Every sentence about the run on stage and the moment of it that is shown: one table of states × what is said, from
 // what the API tells. The page, phones and projectors show what it returns, and say no more.
 import { sentence, times, whole } from "../format.js";
-import { rowsOf } from "./moment.js";
-import { earlyEndOf, isActive, isTimedOutIn } from "./states.js";
+import { earlyEndOf, isActive, isTimedOutIn, rowsOf } from "./moment.js";
 import {
   brokenOff, halting, lead, leftOff, practised, practising, reasonOf, ruleAfter, ruleBefore, ruleOfNone, verdict,
   whyBrokenOff, whyPractised, whyPractising, workOf,

@@ -1,7 +1,6 @@
 // The sentences about a race and a practice: who leads or has won, by which rule and why; what a practice has come to.
 import { count, distanceApart, listed, metres, percentage, SAME_MOMENT_S, whole } from "../format.js";
-import { distanceOf, LEVEL_M, madeAt, stepEnds, timeSpent } from "./moment.js";
-import { earlyEndOf, isActive } from "./states.js";
+import { distanceOf, earlyEndOf, isActive, LEVEL_M, madeAt, stepEnds, timeSpent } from "./moment.js";
 
 /** @import { CurvePoint } from "../training.js" */
 /** @import { Run, TimelineLane } from "../types.js" */

@@ -1,6 +1,6 @@
 // Plays a replay out of the file that it is in, without a server. hexapods/exports/replay_page.py puts it there, with
 // the modules that it imports, the frames of the run and viser's client. The interface is described in docs/exports.md.
-import { decode, Follower, inRecording, SceneState } from "../replay-frames.js";
+import { Follower, inRecording, SceneState, unpack } from "../replay-frames.js";
 
 /** @import { Frames } from "../replay-frames.js" */
 /** @import { ReplayPlan } from "../types.js" */
@@ -30,10 +30,7 @@ const stepEnds = replay.step_ends_s.flat().sort((a, b) => a - b);
 /** Frames out of a block of this page; null if it has none of this name. @param {string} id */
 async function read(id) {
   const text = textOf(id);
-  if (text === null) return null;
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return decode(await new Response(unpacked).arrayBuffer());
+  return text === null ? null : await unpack(text);
 }
 
 /** @param {string} name @param {object} detail */

@@ -398,7 +398,7 @@ def test_client_is_packed() -> None:
 def test_query_parameters(client: str) -> None:
     from app.viewer.viewer_page import ALLOWED_QUERY
 
-    declared = {"view", "theme"}
+    declared = {"theme"}
     for name in ALLOWED_QUERY - declared:
         assert re.search(rf"\w\(`{name}`\)", client)
     assert "=`websocket`" in client

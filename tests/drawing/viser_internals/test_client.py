@@ -59,7 +59,7 @@ def test_cached_page_is_answered_with_304(client: TestClient, encoding: str) -> 
         "if-none-match": f'"other", W/{first.headers["etag"]}',
     }
 
-    second = client.get("/viewer/?view=2", headers=revalidation)
+    second = client.get("/viewer/?theme=dark", headers=revalidation)
 
     assert (second.status_code, second.content) == (304, b"")
     assert second.headers["etag"] == first.headers["etag"]
@@ -81,13 +81,13 @@ def test_each_encoding_has_its_own_entity_tag() -> None:
 
 def test_path_without_slash_redirects(client: TestClient) -> None:
     assert location(client, "/viewer") == "viewer/"
-    assert location(client, "/viewer?view=3&theme=dark") == "viewer/?view=3&theme=dark"
+    assert location(client, "/viewer?theme=dark&showStats=") == "viewer/?theme=dark&showStats="
 
 
 @pytest.mark.parametrize(
     "query",
     [
-        "view=leader&theme=dark",
+        "theme=dark",
         "initialCameraPosition=1,2,3&showStats=",
     ],
 )
@@ -104,12 +104,13 @@ def test_allowed_query_parameters_are_accepted(client: TestClient, query: str) -
         "playbackPath=/api/v1/races/7/recording&playbackPath=data:,x",
         "playbackpath=x",
         "unheard=of",
+        "view=2",
     ],
 )
 def test_other_parameters_are_removed(client: TestClient, query: str) -> None:
-    target = location(client, f"/viewer/?view=2&{query}&theme=light")
+    target = location(client, f"/viewer/?fixedDpr=2&{query}&theme=light")
 
-    assert parse_qs(urlsplit(target).query) == {"view": ["2"], "theme": ["light"]}
+    assert parse_qs(urlsplit(target).query) == {"fixedDpr": ["2"], "theme": ["light"]}
     assert client.get(f"/viewer/{target}").status_code == 200
 
 

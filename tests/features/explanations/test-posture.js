@@ -5,9 +5,9 @@ import {
   chosenState, chooseState, followChosenState, giveUpState, moveAt, whyNoGhost,
 } from "../../../static/features/explanations/posture.js";
 import { clickedCell, drawHere } from "../../../static/js/page.js";
-import { page } from "../../../static/js/page-state.js";
+import { sceneCount } from "../../../static/js/picture.js";
 import { chosenLane, chosenMoment } from "../../../static/features/explanations/steps.js";
-import { applyEvent, options } from "../../../static/js/store.js";
+import { applyEvent, options, scene } from "../../../static/js/store.js";
 import { makeRun, OPTIONS } from "../../page/options.js";
 
 /** @import { Message } from "../../../static/js/replay-frames.js" */
@@ -39,7 +39,7 @@ function encoded(messages) {
 function show(id, time_s) {
   const action_values = time_s > 0 ? { ...GRID, lane: 1, current: [4, 0, 2] } : null;
   const lanes = [{ step: 5, steps: 50 }, { step: 6, steps: 50 }];
-  applyEvent("scene", { run_id: id, kind: "race", phase: "race", time_s, lanes, action_values });
+  scene.value = /** @type {any} */ ({ run_id: id, kind: "race", phase: "race", time_s, lanes, action_values });
 }
 
 /** Put a race on stage. */
@@ -68,7 +68,6 @@ beforeEach(() => {
 });
 afterEach(() => {
   stop();
-  page.run.value = null;
   globalThis.fetch = fetch;
 });
 
@@ -100,7 +99,7 @@ test("a chosen state is drawn in the 3D view until it is given up", async () => 
 
 test("a ghost goes with its run, its lane, the scene that it is in, and the panel", async () => {
   const leavings = [
-    () => stageRace(), () => (chosenLane.value = 0), () => (drawHere.value = () => {}), () => (page.run.value = "own"),
+    () => stageRace(), () => (chosenLane.value = 0), () => (drawHere.value = () => {}), () => (sceneCount.value += 1),
     () => stop(),
   ];
   for (const leave of leavings) {

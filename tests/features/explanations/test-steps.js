@@ -6,7 +6,7 @@ import {
   followStage, lastStep, moment, moveOf, ruleNumber, stateCells, stateIndex, tableMoment, triedMoves,
   valueRange,
 } from "../../../static/features/explanations/steps.js";
-import { applyEvent, connection, options } from "../../../static/js/store.js";
+import { applyEvent, connection, options, scene } from "../../../static/js/store.js";
 import { makeRun, OPTIONS } from "../../page/options.js";
 
 /** @import { StateTable } from "../../../static/js/types.js" */
@@ -22,7 +22,7 @@ beforeEach(() => {
 /** Put a run on stage. @param {ReturnType<typeof makeRun>} run @param {object[]} lanes */
 function show(run, lanes) {
   applyEvent("snapshot", { runs: [run], stage: { ...STAGE, run_id: run.id }, scene: null });
-  applyEvent("scene", { run_id: run.id, kind: run.kind, phase: "practice", lanes, action_values: null });
+  scene.value = /** @type {any} */ ({ run_id: run.id, kind: run.kind, phase: "practice", lanes, action_values: null });
 }
 
 test("the step of the stage is looked at until another is chosen", () => {

@@ -1,7 +1,7 @@
 // The tables of the learners of a race as maps, to be looked at side by side.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { applyEvent, options } from "../../../static/js/store.js";
+import { applyEvent, options, scene } from "../../../static/js/store.js";
 import { mapOf, trainedLanes } from "../../../static/features/explanations/tables.js";
 import { makeRun, makeSceneLane, OPTIONS } from "../../page/options.js";
 
@@ -37,6 +37,6 @@ test("the tables are those of the lanes that have practised", () => {
   const stage = { run_id: race.id, next_run_id: null, playing: true, speed: 1, clock: "paper" };
   applyEvent("snapshot", { runs: [race], stage, scene: null });
   const shown = { run_id: race.id, kind: "race", phase: "race", lanes: [makeSceneLane({})], action_values: null };
-  applyEvent("scene", shown);
+  scene.value = /** @type {any} */ (shown);
   assert.deepEqual(trainedLanes.value.map(({ training_id }) => training_id), ["t1", "t2"]);
 });

@@ -5,7 +5,7 @@ import {
   analysis, canSeek, cycleSentence, extentOf, FIGURES, followGait, legsInOrder, legsInTheAir, lineOf,
   momentOf, part, problem, raceTimeAt, rangeInWords, SERIES, subject, swingsOf,
 } from "../../../static/features/gait_analysis/gait.js";
-import { applyEvent, connection, options } from "../../../static/js/store.js";
+import { applyEvent, connection, options, scene } from "../../../static/js/store.js";
 import { makeRun, OPTIONS } from "../../page/options.js";
 
 /** @import { GaitFigures } from "../../../static/js/types.js" */
@@ -52,7 +52,7 @@ test("a moment of robot time is shown once the lane has thought before it", () =
 test("it is about the race, and about a training while that is shown", () => {
   assert.equal(subject.value?.part, "race");
   applyEvent("stage", { ...STAGE, run_id: "training" });
-  applyEvent("scene", { run_id: "training", kind: "training", time_s: 3.2, lanes: [] });
+  scene.value = /** @type {any} */ ({ run_id: "training", kind: "training", time_s: 3.2, lanes: [] });
   assert.deepEqual([subject.value?.run.id, subject.value?.part], ["training", "practice"]);
   assert.equal(momentOf(0), 3.2);
   assert.equal(canSeek.value, true);

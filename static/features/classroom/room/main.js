@@ -6,6 +6,7 @@ import { Loaded, withStyle } from "../../../js/features.js";
 import { followTheme } from "../../../js/page.js";
 import { Phone } from "./phone.js";
 import { followOwnRun } from "./picture.js";
+import { followPlayer } from "../../../js/player.js";
 import { followRoom, isProjector, isTeacher, refusal, room } from "./room.js";
 import { Closed, Waiting } from "./join.js";
 
@@ -26,6 +27,7 @@ effect(() => {
   const { title, code } = room.value ?? { title: "Room", code: "" };
   document.title = [code, title, "Racing Hexapods"].filter(Boolean).join(" · ");
 });
+followPlayer({ ofStage: isProjector });
 if (!isProjector) followOwnRun();
 followRoom();
 

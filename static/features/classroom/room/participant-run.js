@@ -1,6 +1,6 @@
 // The own robot of a participant: its picture, how far it is, and what came of it.
 import { html, ProgressBar } from "../../../js/components/elements.js";
-import { replayProblem } from "../../../js/replay.js";
+import { replayProblem } from "../../../js/player.js";
 import { participantRunNarrative } from "./run-sentences.js";
 import { isAway } from "../../../js/store.js";
 import { givenInWords } from "./allowed-settings.js";
@@ -9,7 +9,7 @@ import { ownEntry, ownRun, room } from "./room.js";
 
 export const OwnRobot = () => html`
   <section class="own-robot" aria-label="Your robot">
-    <${Picture} source="replay" />
+    <${Picture} />
     <${ReplayBar} />
     <${OwnRun} />
   </section>

@@ -1,15 +1,15 @@
-// The 3D view of a room's page: a replay of the own run, drawn here, or the room's stage with the run in the spotlight.
+// The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
 import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../../../js/components/elements.js";
 import { page } from "../../../js/page-state.js";
 import { shownTheme } from "../../../js/page.js";
-import { isShownToEnd } from "../../../js/narrative/states.js";
+import { isShownToEnd } from "../../../js/narrative/moment.js";
 import { isAway, scene } from "../../../js/store.js";
 import {
-  closeReplay, drawIn, endTime, followReplay, isBuffering, openReplay, playReplay, plan, replayProblem, replayTime,
+  closeReplay, drawIn, endTime, isBuffering, openReplay, playback, playReplay, plan, position, replayProblem,
   setReplaySpeed,
-} from "../../../js/replay.js";
+} from "../../../js/player.js";
 import { lastRunId, ownRun, ownRunId, room } from "./room.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -34,7 +34,6 @@ export const arrived = signal(new Set());
 
 /** Replay the own run as soon as it has a step, and that of the next card after it. */
 export function followOwnRun() {
-  followReplay();
   effect(() => {
     const id = replayed.value;
     if (id !== null && isShownToEnd(scene.value, id) && !arrived.peek().has(id)) {
@@ -60,12 +59,11 @@ export const CLOSER = { why: "Why each move", gait: "Its gait", table: "Its tabl
 export const closerLink = (tab) =>
   `${room.value?.code}/?run=${ownRunId.value ?? lastRunId.value}&depth=study&tab=${tab}&hidden=card`;
 
-/** @param {{ source: "stage" | "replay" }} props */
-export function Picture({ source }) {
+/** What this page plays, in 3D. @param {{ isProjected?: boolean }} props */
+export function Picture({ isProjected = false }) {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
-  const view = source === "stage" ? "leader" : "elsewhere";
-  const [address] = useState(() => `${room.peek()?.code}/viewer/?view=${view}&theme=${shownTheme.peek()}`);
+  const [address] = useState(() => `${room.peek()?.code}/viewer/?theme=${shownTheme.peek()}`);
   useEffect(() => {
     const send = (/** @type {Message[]} */ messages) =>
       frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, globalThis.origin);
@@ -73,24 +71,19 @@ export function Picture({ source }) {
       if (origin !== globalThis.origin || from !== frame.current?.contentWindow) return;
       if (data?.type !== "hexapods:status") return;
       setStatus(data.status);
-      if (data.status === "connected" && source === "replay") drawIn(send);
+      if (data.status === "connected") drawIn(send);
     };
     addEventListener("message", onMessage);
     return () => removeEventListener("message", onMessage);
   }, []);
   useEffect(() => {
-    const message = { type: "hexapods:show", view, theme: shownTheme.value, isProjected: source === "stage" };
+    const message = { type: "hexapods:show", theme: shownTheme.value, isProjected };
     frame.current?.contentWindow?.postMessage(message, globalThis.origin);
   }, [shownTheme.value, status]);
   return html`
     <div class="room-picture" data-status=${status}>
       <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>
       ${status === "loading" && html`<p class="over" role="status">The robot walks to the start line…</p>`}
-      ${status !== "loading" && status !== "connected" && html`
-        <p class="over" role="status">${isAway.value
-          ? "The picture comes back with the connection."
-          : "The picture comes when there is room; all figures are live."}</p>
-      `}
     </div>
   `;
 }
@@ -102,9 +95,9 @@ export function ReplayBar() {
     return html`<p class="dim" role="status">${isAway.value
       ? "The picture comes with the connection." : "Loading the picture…"}</p>`;
   }
-  const isAtEnd = plan.value.complete && replayTime.value >= endTime.value - 1e-6;
+  const isAtEnd = playback.value?.ended ?? false;
   const isPlaying = page.moment.value === null && !isAtEnd;
-  const share = endTime.value > 0 ? replayTime.value / endTime.value : 0;
+  const share = endTime.value > 0 ? position.value / endTime.value : 0;
   return html`
     <div class="replay-bar">
       <button class="quiet" onClick=${() => playReplay(!isPlaying)}>

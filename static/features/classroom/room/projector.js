@@ -10,7 +10,7 @@ import { Away } from "./join.js";
 import { Axes, lineOf, stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
 import { KINDS } from "./questions.js";
-import { isShownToEnd } from "../../../js/narrative/states.js";
+import { isShownToEnd } from "../../../js/narrative/moment.js";
 import { agentOf } from "../../../js/settings.js";
 import { scene } from "../../../js/store.js";
 import { isRevealed, room, shownResults } from "./room.js";
@@ -153,7 +153,7 @@ function Lit({ classroom }) {
   const distance_m = isShownToEnd(scene.value, classroom.spotlight) ? entry?.run?.distance_m ?? null : null;
   return html`
     <div class="lit">
-      <${Picture} source="stage" key=${classroom.spotlight} />
+      <${Picture} isProjected=${true} key=${classroom.spotlight} />
       <p>
         <b>${entry?.name ?? "One of you"}</b>
         ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}

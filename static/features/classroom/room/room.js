@@ -6,7 +6,8 @@ import { storedText } from "../../../js/page.js";
 import { ownAddress } from "../../../js/page-state.js";
 import { makeRequests } from "../../../js/requests.js";
 import { debounce } from "../../../js/debounce.js";
-import { applyEvent, connection, eventNames, openEvents, options, runs, setEntry } from "../../../js/store.js";
+import { openEvents } from "../../../js/events.js";
+import { applyEvent, connection, eventNames, options, runs, setEntry } from "../../../js/store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../../../js/api.js" */
@@ -117,11 +118,11 @@ function onTournament({ id, state }) {
   if (tournament?.state !== state) refreshSoon();
 }
 
-/** @param {string} name @param {any} data */
-function onEvent(name, data) {
+/** @param {string} name @param {any} data @param {boolean} isContinued */
+function onEvent(name, data, isContinued) {
   if (name === "room") onRoom(data);
   else if (name === "tournament") onTournament(data);
-  else applyEvent(name, data);
+  else applyEvent(name, data, isContinued);
   if (name === "snapshot") refresh().then(refreshResults);
   if (name !== "run" || !ENDED.includes(data.state)) return;
   if (isTeacher.peek() || data.id === ownRunId.peek() || isRevealed.peek()) refreshResultsSoon();
@@ -145,7 +146,8 @@ export async function followRoom() {
       connection.value = now;
       // The stream does not say why it ended: the room may have, or the seat is gone.
       if (now === "reconnecting") untracked(refresh);
-    }, api.eventsOf(code));
+      // Phones show no stage.
+    }, () => `${api.eventsOf(code)}?picture=${isProjector}`);
   });
   effect(() => {
     // Each card has results of its own.

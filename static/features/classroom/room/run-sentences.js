@@ -1,7 +1,7 @@
 // What is said of a participant's own run, on the phone and on the projector: of how far it came nothing before the
 // picture has got there.
 import { metres, whole } from "../../../js/format.js";
-import { isActive } from "../../../js/narrative/states.js";
+import { isActive } from "../../../js/narrative/moment.js";
 
 /** @import { Run } from "../../../js/types.js" */
 

@@ -4,7 +4,8 @@ import { setStage } from "../../../js/actions.js";
 import { whole } from "../../../js/format.js";
 import { canPlay, shownRun } from "../../../js/on-stage.js";
 import { followChosenState } from "../posture.js";
-import { ownStage, scene } from "../../../js/store.js";
+import { isOwn } from "../../../js/player.js";
+import { scene } from "../../../js/store.js";
 import { chosenLane, chooseStep, followMoment, followStage, isFollowing, lastStep } from "../steps.js";
 import { messageOf } from "../../../js/titles.js";
 import { html, Icon, Segments } from "../../../js/components/elements.js";
@@ -39,7 +40,7 @@ export function Navigator({ at }) {
   const { step } = at;
   const last = lastStep.value;
   const lanes = scene.value?.lanes ?? [];
-  const followed = ownStage.value === null ? "stage" : "replay";
+  const followed = isOwn.value ? "replay" : "stage";
   /** @param {{ target: HTMLInputElement }} event */
   const onInput = ({ target }) => {
     const number = Number(target.value);

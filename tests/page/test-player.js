@@ -1,13 +1,13 @@
-// A replay of the page's own: what it asks the server for, and what it draws.
+// What the page plays: what it asks the server for, and what it draws.
 import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
 import { problems, setStage, showOnStage } from "../../static/js/actions.js";
 import { page } from "../../static/js/page-state.js";
 import {
-  closeReplay, drawIn, endTime, followReplay, openReplay, playReplay, replayProblem, replayTime, seekReplay,
+  closeReplay, drawIn, endTime, followPlayer, openReplay, playback, playReplay, position, replayProblem, seekReplay,
   setReplaySpeed, tick,
-} from "../../static/js/replay.js";
-import { applyEvent, stage } from "../../static/js/store.js";
+} from "../../static/js/player.js";
+import { applyEvent } from "../../static/js/store.js";
 import { makeRun } from "./options.js";
 
 const PLAN = {
@@ -61,7 +61,7 @@ function answerTo({ pathname, searchParams }) {
 }
 globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
 globalThis.requestAnimationFrame = () => 0;
-followReplay();
+followPlayer();
 
 /** Messages that the 3D view got. @type {Record<string, any>[]} */
 const drawn = [];
@@ -141,7 +141,7 @@ test("a held replay follows another robot at once", async () => {
 test("played again at its end it begins anew", async () => {
   await openReplay("a", { time_s: 4, isPlaying: false });
   playReplay(true);
-  assert.equal(replayTime.value, 0);
+  assert.equal(position.value, 0);
   playReplay(false);
 });
 
@@ -152,21 +152,21 @@ test("a run that still computes is played as far as it has come, until it ends",
   recorded = { complete: false, recorded_s: [[0, 1]] };
   await openReplay("a");
   await wait(200);
-  assert.equal(replayTime.value, 1, "it waits for more");
+  assert.equal(position.value, 1, "it waits for more");
   recorded = { complete: false, recorded_s: [[0, 3]] };
   await wait(200);
-  assert.equal(replayTime.value, 3);
+  assert.equal(position.value, 3);
   assert.equal(endTime.value, 3);
   assert.ok(drawn.at(-1)?.position[0] < -2.9, "the newest frame is drawn");
   recorded = { complete: true, recorded_s: [[0, 3.5]] };
   await wait(200);
-  assert.equal(replayTime.value, 3.5);
+  assert.equal(position.value, 3.5);
   const before = plansAsked();
   assert.ok(before <= 12, `about one plan a second, not ${before}`);
   await wait(200);
   assert.equal(plansAsked(), before, "it computes no more");
   playReplay(true);
-  assert.equal(replayTime.value, 0, "it has ended");
+  assert.equal(position.value, 0, "it has ended");
 });
 
 test("a run that still computes has a longer time bar while it is held at the end", async () => {
@@ -175,7 +175,7 @@ test("a run that still computes has a longer time bar while it is held at the en
   await wait(5);
   recorded = { complete: false, recorded_s: [[0, 3]] };
   await wait(70);
-  assert.deepEqual([endTime.value, replayTime.value], [3, 1]);
+  assert.deepEqual([endTime.value, position.value], [3, 1]);
 });
 
 test("no frame is requested beyond the last, however close", async () => {
@@ -208,8 +208,8 @@ for (const order of [["wall", "free"], ["free", "wall"]]) {
       arrive[request]();
       await settle();
     }
-    assert.equal(stage.value?.clock, "free");
-    assert.equal(replayTime.value, 2, "at the end of the same step");
+    assert.equal(playback.value?.clock, "free");
+    assert.equal(position.value, 2, "at the end of the same step");
   });
 }
 
@@ -229,7 +229,7 @@ test("a clock whose plan cannot be had leaves the clock and the moment as they w
   plan = () => new Response(JSON.stringify({ detail: "The server is busy." }), { status: 503 });
   await setStage({ clock: "wall" });
   assert.equal(problems.value.stage?.message, "The server is busy.");
-  assert.deepEqual([stage.value?.clock, replayTime.value], ["paper", 2.5]);
+  assert.deepEqual([playback.value?.clock, position.value], ["paper", 2.5]);
   setStage({ speed: 2 });
   assert.equal(problems.value.stage, null);
 });

@@ -1,0 +1,189 @@
+// The stream of server-sent events: opened again after every break, and made up for by asking for snapshots where it
+// does not come through. And the server's clock, by the time stamps of what it sends.
+import { effect, untracked } from "@preact/signals";
+
+// ---- the server's clock
+
+const CLOCK_WINDOW_S = 60;
+/** A greater step of the clock is that of another process: the server was started anew. */
+const OTHER_CLOCK_S = 2;
+
+/**
+ * The clock of the server as this page can know it. A message can only be late, so that its clock is ahead of this
+ * page's by the most that any message of the last minute says.
+ */
+export class ServerClock {
+  constructor() {
+    /** Messages that are less late than all that came after them. @type {{ at_s: number, delay_s: number }[]} */
+    this.delays = [];
+  }
+
+  /**
+   * Take the time stamp of a message.
+   * @param {number} sent_s by the server's clock [s]
+   * @param {number} now_s by this page's [s]
+   * @param {boolean} [isFirst] whether it may be that of another process than the messages before
+   */
+  note(sent_s, now_s, isFirst = false) {
+    const delay_s = now_s - sent_s;
+    if (isFirst && delay_s - (this.delays[0]?.delay_s ?? delay_s) > OTHER_CLOCK_S) this.delays = [];
+    this.delays = this.delays.filter(({ at_s, delay_s: other }) => now_s - at_s < CLOCK_WINDOW_S && other < delay_s);
+    this.delays.push({ at_s: now_s, delay_s });
+  }
+
+  /** The server's time at a time of this page's clock [s]. @param {number} now_s */
+  at(now_s) {
+    return now_s - (this.delays[0]?.delay_s ?? 0);
+  }
+}
+
+// ---- the stream
+
+const FIRST_WAIT_MS = 500;
+const LONGEST_WAIT_MS = 8000;
+/** A stream that brings nothing for so long is closed: at first, and later, when the server sends its clock. */
+const FIRST_SILENCE_MS = 4000;
+const LONGEST_SILENCE_MS = 25_000;
+const POLL_MS = 2000;
+
+/** @typedef {"connecting" | "live" | "reconnecting"} Connection */
+/** @typedef {ReturnType<typeof setTimeout> | undefined} Timer */
+/**
+ * Takes an event. `isContinued`: of a snapshot, whether the connection has held since the one before.
+ * @typedef {(name: string, data: any, isContinued: boolean) => void} OnEvent
+ */
+
+/** A stream that is opened again after every break, and what is asked for meanwhile. */
+class Stream {
+  /**
+   * @param {string[]} names of events that are wanted
+   * @param {OnEvent} onEvent
+   * @param {(state: Connection) => void} onState
+   */
+  constructor(names, onEvent, onState) {
+    this.names = names;
+    this.onEvent = onEvent;
+    this.onState = onState;
+    this.address = "";
+    /** @type {EventSource | null} */
+    this.source = null;
+    this.wait_ms = FIRST_WAIT_MS;
+    /** When the stream is opened again, is given up, and is made up for. @type {Record<string, Timer>} */
+    this.timers = {};
+    /** Counts the polls: the answer of one that was given up is late. */
+    this.polls = 0;
+    this.isPolling = false;
+    this.isLive = false;
+  }
+
+  open() {
+    this.close();
+    const source = new EventSource(this.address);
+    this.source = source;
+    this.expectWithin(FIRST_SILENCE_MS);
+    for (const name of this.names) {
+      source.addEventListener(name, ({ data }) => {
+        if (source === this.source) this.take(name, JSON.parse(data));
+      });
+    }
+    // The browser's own retry gives up on some answers.
+    source.onerror = () => source === this.source && this.lose();
+  }
+
+  /** @param {string} name @param {any} data */
+  take(name, data) {
+    this.expectWithin(LONGEST_SILENCE_MS);
+    this.onEvent(name, data, this.isLive);
+    if (name !== "snapshot") return;
+    this.wait_ms = FIRST_WAIT_MS;
+    this.stopPolling();
+    this.tell(true);
+  }
+
+  /** @param {boolean} isLive */
+  tell(isLive) {
+    this.isLive = isLive;
+    this.onState(isLive ? "live" : "reconnecting");
+  }
+
+  /** Give the stream up where it brings nothing for so long. @param {number} most_ms */
+  expectWithin(most_ms) {
+    clearTimeout(this.timers.silence);
+    this.timers.silence = setTimeout(() => this.lose(), most_ms);
+  }
+
+  close() {
+    clearTimeout(this.timers.silence);
+    clearTimeout(this.timers.opening);
+    this.source?.close();
+    this.source = null;
+  }
+
+  lose() {
+    this.close();
+    this.timers.opening = setTimeout(() => this.open(), this.wait_ms);
+    this.wait_ms = Math.min(2 * this.wait_ms, LONGEST_WAIT_MS);
+    if (!this.isPolling) this.poll();
+  }
+
+  async poll() {
+    this.isPolling = true;
+    this.polls += 1;
+    const number = this.polls;
+    const data = await snapshotOf(this.address);
+    if (number !== this.polls) return;
+    this.timers.polling = setTimeout(() => this.poll(), POLL_MS);
+    if (data !== null) this.onEvent("snapshot", data, this.isLive);
+    this.tell(data !== null);
+  }
+
+  stopPolling() {
+    this.isPolling = false;
+    this.polls += 1;
+    clearTimeout(this.timers.polling);
+  }
+}
+
+/**
+ * Open the stream, and open it again after every break with exponential back-off. Meanwhile snapshots are asked for;
+ * while they come the connection is live.
+ * @param {string[]} names of events that are wanted
+ * @param {OnEvent} onEvent
+ * @param {(state: Connection) => void} onState
+ * @param {() => string} addressOf the stream; reads signals, and where they change another stream takes its place
+ * @returns {() => void} closes it for good
+ */
+export function openEvents(names, onEvent, onState, addressOf) {
+  const stream = new Stream(names, onEvent, onState);
+  onState("connecting");
+  const stop = effect(() => {
+    stream.address = addressOf();
+    untracked(() => stream.open());
+  });
+  let isOver = false;
+  const openNow = () => {
+    if (!isOver && stream.source === null) stream.open();
+  };
+  addEventListener("online", openNow);
+  document.addEventListener("visibilitychange", () => {
+    if (!document.hidden) openNow();
+  });
+  return () => {
+    isOver = true;
+    stop();
+    stream.close();
+    stream.stopPolling();
+  };
+}
+
+/** The snapshot with which a stream would begin; null if it cannot be had. @param {string} stream */
+async function snapshotOf(stream) {
+  const address = new URL(stream);
+  address.pathname += "/snapshot";
+  try {
+    const answer = await fetch(address, { signal: AbortSignal.timeout(FIRST_SILENCE_MS) });
+    return answer.ok ? await answer.json() : null;
+  } catch {
+    return null;
+  }
+}
