@@ -18,10 +18,17 @@ from app.settings import Settings
 from tests.storage.stores import temporary_store
 
 _PATIENCE_S = 60.0
+UPGRADE = {
+    "Connection": "Upgrade",
+    "Upgrade": "websocket",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+}
+"""Headers of the handshake of a websocket, which no path of the server answers."""
 
 
 class Route(NamedTuple):
-    """A method and path of the server; `WS` is the method of websockets."""
+    """A method and path of the server."""
 
     method: str
     path: str
@@ -37,7 +44,7 @@ def every_route() -> list[Route]:
         if path == "/static":
             routes += [Route(method, "/static/favicon.svg") for method in ("GET", "HEAD")]
         else:
-            routes += [Route(method, path) for method in sorted(context.methods or {"WS"})]
+            routes += [Route(method, path) for method in sorted(context.methods or ())]
     assert len(routes) > 30
     return routes
 
@@ -50,7 +57,7 @@ def accesses() -> dict[Route, Access]:
     by_route: dict[Route, Access] = {}
     for route in every_route():
         path = "/static" if route.path.startswith("/static/") else route.path
-        method = "get" if route.method in ("HEAD", "WS") else route.method.lower()
+        method = "get" if route.method == "HEAD" else route.method.lower()
         by_route[route] = of_routes[method, re.sub(":(path|robot)}", "}", path)].access
     return by_route
 
@@ -65,13 +72,12 @@ def send(port: int, *lines: str, body: bytes = b"", source: str = "127.0.0.1") -
         source: the client's address, a loopback one.
     """
     with socket.create_connection(("127.0.0.1", port), _PATIENCE_S, (source, 0)) as sock:
-        end = [] if "Upgrade: websocket" in lines else ["Connection: close"]
-        head = "\r\n".join([*lines, *end]) + "\r\n\r\n"
+        head = "\r\n".join([*lines, "Connection: close"]) + "\r\n\r\n"
         sock.sendall(head.encode("latin-1") + body)
         answer = b""
         while len(answer) < 1 << 16 and (chunk := sock.recv(1 << 16)):
             answer += chunk
-            if answer.startswith(b"HTTP/1.1 101") or b"text/event-stream" in answer:
+            if b"text/event-stream" in answer:
                 break  # an endless stream
         return answer
 
@@ -82,19 +88,12 @@ def status_of(answer: bytes) -> int:
 
 
 def request_lines(route: Route, host: str, **headers: str) -> list[str]:
-    """Return the request line and headers for a route; for a websocket those of the handshake."""
-    lines = [f"{'GET' if route.method == 'WS' else route.method} {route.path} HTTP/1.1"]
+    """Return the request line and headers for a route."""
+    lines = [f"{route.method} {route.path} HTTP/1.1"]
     if "Host" not in headers:
         lines.append(f"Host: {host}")
     lines += [f"{name}: {value}" for name, value in headers.items()]
-    if route.method == "WS":
-        lines += [
-            "Connection: Upgrade",
-            "Upgrade: websocket",
-            "Sec-WebSocket-Version: 13",
-            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
-        ]
-    elif route.method not in ("GET", "HEAD"):
+    if route.method not in ("GET", "HEAD"):
         lines.append("Content-Length: 0")
     return lines
 

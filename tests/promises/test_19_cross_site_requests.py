@@ -1,5 +1,4 @@
-"""Promise 19: foreign pages get nowhere: Host, Origin and Fetch metadata over every route and
-websocket.
+"""Promise 19: foreign pages get nowhere: Host, Origin and Fetch metadata over every route.
 
 Over raw sockets: 100 % refused. The gate tries every third of them on each route; in full by
 `make soak`.
@@ -61,7 +60,6 @@ def test_foreign_headers_are_refused_on_every_route(quiet_server: Serving) -> No
     headers += [{"Origin": origin.format(port=port)} for origin in FOREIGN_ORIGINS]
     headers += FOREIGN_FETCHES
     routes = every_route()
-    assert {"WS"} < {route.method for route in routes}
     accepted = []
     for number, route in enumerate(routes):
         # Each route begins with another one, so that each of them meets many routes.
@@ -93,6 +91,6 @@ def test_the_apps_own_page_is_accepted_on_every_route(quiet_server: Serving) -> 
     port = quiet_server.port
     server_host = f"127.0.0.1:{port}"
     for route in every_route():
-        if route.method in ("GET", "HEAD", "WS"):
+        if route.method in ("GET", "HEAD"):
             answer = send(port, *request_lines(route, server_host, Origin=f"http://{server_host}"))
             assert status_of(answer) not in (400, 401, 403), (route, answer[:200])

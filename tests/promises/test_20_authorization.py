@@ -1,4 +1,4 @@
-"""Promise 20: nothing is unguarded: each route and websocket has its role.
+"""Promise 20: nothing is unguarded: each route has its role.
 
 In full: routes are enumerated from the app, so that new ones are covered; spectators can change
 nothing by any of them, and their page offers no control that would be refused, of which the gate
@@ -16,10 +16,10 @@ from playwright.sync_api import Page, Request, expect
 from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
-from tests.promises.raw import Route, accesses, every_route, request_lines, send, status_of
+from tests.promises.raw import UPGRADE, Route, accesses, every_route, request_lines, send, status_of
 
 TOKEN = "a-token-for-tests"
-READS = {"GET", "HEAD", "WS"}
+READS = {"GET", "HEAD"}
 WHAT_IF, PREVIEW = "/api/v1/what-if", "/api/v1/robots/preview"
 FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
 """Accessible without the token: the page, which asks for it, and the health checks."""
@@ -72,8 +72,6 @@ def status_for(server: Serving, route: Route, run_id: str, *headers: str) -> int
         body = json.dumps(VALID_BODIES[route.path]).encode()
         lines = [line for line in lines if not line.startswith("Content-Length")]
         lines += ["Content-Type: application/json", f"Content-Length: {len(body)}"]
-    if route.method == "WS":
-        lines.append("Sec-WebSocket-Protocol: viser-v0")
     return status_of(send(server.port, *lines, *headers, body=body))
 
 
@@ -84,7 +82,7 @@ def state_of(server: Serving) -> Any:
     answers = [send(server.port, f"GET {path} HTTP/1.1", *lines) for path in paths]
     state = [json.loads(answer.partition(b"\r\n\r\n")[2]) for answer in answers]
     # These change by themselves.
-    for name in ("time_s", "ended", "live", "phase", "announced"):
+    for name in ("time_s", "ended", "live", "phase", "announced", "sent_s", "playhead"):
         state[-1].pop(name)
     return state
 
@@ -154,7 +152,14 @@ def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> N
         elif role_of(route) == "anyone":
             assert status in (200, 503), route
         else:
-            assert status == (403 if route.method == "WS" else 401), route
+            assert status == 401, route
+
+
+def test_the_handshake_of_a_websocket_is_a_request_as_any_other(guarded: Serving) -> None:
+    handshake = [f"{name}: {value}" for name, value in UPGRADE.items()]
+    for route in [*every_route(), Route("GET", "/nothing")]:
+        status = status_for(guarded, route, "none", *handshake)
+        assert status == status_for(guarded, route, "none"), route
 
 
 def test_operators_are_accepted_on_every_route(guarded: Serving) -> None:

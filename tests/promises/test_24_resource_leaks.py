@@ -23,11 +23,12 @@ from app.jobs.process_pool import ProcessPool
 from app.storage.database.engine import SQLITE_FILES
 from app.storage.errors import Busy
 from tests.browser.serving import Serving
+from tests.event_streams import WITH_PICTURE, frames_of
 from tests.jobs.waiting import wait_until
 from tests.promises.files import database_files
 from tests.promises.length import at_length
 from tests.promises.test_12_reconnect import Events
-from tests.viewer.serving import PATIENCE_S, Viewer
+from tests.running_app import PATIENCE_S
 
 WARM_UP = at_length(2, 50)
 ROUNDS = at_length(2, 1000)
@@ -38,22 +39,22 @@ BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20, "eva
 
 def use_once(server: Serving, api: httpx2.Client) -> None:
     """Start, watch, read and delete one training, so that nothing of it is left."""
-    viewers = [Viewer(f"ws://127.0.0.1:{server.port}/viewer/?view={view}") for view in ("1", "2")]
-    events = Events(server.port, None)
+    viewers = [Events(server.port, path=WITH_PICTURE) for _ in range(2)]
+    events = Events(server.port)
     events.next()
     run: dict[str, Any] = api.post("/trainings", json=BODY).json()
     path = f"/trainings/{run['id']}"
     while api.get(path).json()["state"] != "finished":
         time.sleep(0.05)
     for viewer in viewers:
-        viewer.frame()
+        assert frames_of(viewer.until("piece"))
     for path_below in ("/curve", "/q-table", "/q-table?format=npz", "/nothing"):
         api.get(path + path_below)
     api.put("/stage", json={"run_id": run["id"]})
     api.post("/trainings", json={"gait": "none"})
     events.drop()
     for viewer in viewers:
-        viewer.socket.close()
+        viewer.drop()
     assert api.delete(path).status_code == 204
 
 

@@ -1,6 +1,6 @@
-"""Part of promise 28: one address cannot take all connections, and an operator always gets one.
+"""Part of promise 28: one address cannot take all streams, and an operator always gets one.
 
-Of the viewer connections, and of the event streams, one address gets at most four fifths; a client
+Of the event streams, those of viewers among them, one address gets at most four fifths; a client
 from another address is admitted even when all are taken, and so is an operator from the same.
 """
 
@@ -10,11 +10,10 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 
 import pytest
-from websockets.exceptions import ConnectionClosed
 
+from tests.event_streams import PATH, WITH_PICTURE
 from tests.promises.length import at_length
 from tests.served import Served, serving_from
-from tests.viewer.serving import Viewer
 
 pytestmark = pytest.mark.test
 
@@ -29,71 +28,60 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield make(HEXAPODS_TOKEN=TOKEN, HEXAPODS_MAX_VIEWERS=str(PLACES))
 
 
-def open_viewer(server: Served, stack: ExitStack, source: str, *, operator: bool = False) -> Viewer:
-    """Connect a viewer from one of this machine's loopback addresses."""
-    port = int(server.address.rpartition(":")[2])
-    headers = {"Authorization": f"Bearer {TOKEN}"} if operator else {}
-    sock = socket.create_connection(("127.0.0.1", port), source_address=(source, 0))
-    viewer = Viewer(f"ws://127.0.0.1:{port}/viewer/", sock=sock, additional_headers=headers)
-    return stack.enter_context(viewer)
+class Stream(socket.socket):
+    """An event stream as a client receives it; `head` is that of the answer."""
 
+    def __init__(self, server: Served, source: str, path: str, *, operator: bool = False) -> None:
+        """Open a stream from one of this machine's loopback addresses."""
+        super().__init__()
+        self.bind((source, 0))
+        self.settimeout(30)
+        self.connect(("127.0.0.1", int(server.address.rpartition(":")[2])))
+        bearer = f"Authorization: Bearer {TOKEN}\r\n" if operator else ""
+        self.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n{bearer}\r\n".encode())
+        self.head = b""
+        while b"\r\n\r\n" not in self.head:
+            self.head += self.recv(1 << 16)
 
-def refusal(viewer: Viewer) -> tuple[int, str]:
-    with pytest.raises(ConnectionClosed) as closed:
-        viewer.frames_until(lambda _: False)
-    assert closed.value.rcvd is not None
-    return closed.value.rcvd.code, closed.value.rcvd.reason
+    @property
+    def status(self) -> int:
+        """Status of the answer."""
+        return int(self.head.split()[1])
 
-
-@pytest.mark.timeout(600)
-def test_one_address_cannot_take_all_viewer_places(server: Served) -> None:
-    with ExitStack() as stack:
-        viewers = [open_viewer(server, stack, "127.0.0.2") for _ in range(SHARE)]
-        viewers[-1].frame()
-        assert refusal(open_viewer(server, stack, "127.0.0.2")) == (1013, "address full")
-        neighbours = [open_viewer(server, stack, "127.0.0.3") for _ in range(PLACES - SHARE)]
-        neighbours[-1].frame()
-        # All places are taken now.
-        assert open_viewer(server, stack, "127.0.0.4").frame().raw
-        assert refusal(viewers[-1]) == (1013, "place taken")
-        assert open_viewer(server, stack, "127.0.0.2", operator=True).frame().raw
-        assert refusal(viewers[-2]) == (1013, "place taken")
-
-
-def open_event_stream(
-    server: Served, stack: ExitStack, source: str, *, operator: bool = False
-) -> bytes:
-    """Open an event stream, and return the head of the answer."""
-    port = int(server.address.rpartition(":")[2])
-    sock = socket.create_connection(("127.0.0.1", port), source_address=(source, 0), timeout=30)
-    stack.enter_context(sock)
-    bearer = f"Authorization: Bearer {TOKEN}\r\n" if operator else ""
-    sock.sendall(f"GET /api/v1/events HTTP/1.1\r\nHost: 127.0.0.1\r\n{bearer}\r\n".encode())
-    answer = b""
-    while b"\r\n\r\n" not in answer:
-        answer += sock.recv(1 << 16)
-    return answer
+    def wait_for_end(self) -> None:
+        """Read until the server ends the stream."""
+        received = self.head
+        while not received.endswith(b"\r\n0\r\n\r\n"):
+            chunk = self.recv(1 << 16)
+            assert chunk, "cut off in the middle"
+            received = received[-8:] + chunk
 
 
 @pytest.mark.timeout(600)
-def test_one_address_cannot_take_all_event_streams(server: Served) -> None:
+@pytest.mark.parametrize("path", [PATH, WITH_PICTURE], ids=["events", "viewers"])
+def test_one_address_cannot_take_all_streams(server: Served, path: str) -> None:
     with ExitStack() as stack:
-        for _ in range(SHARE):
-            assert open_event_stream(server, stack, "127.0.0.2").startswith(b"HTTP/1.1 200")
-        refused = open_event_stream(server, stack, "127.0.0.2")
-        assert refused.startswith(b"HTTP/1.1 429")
-        assert b"retry-after: 10" in refused.lower()
+
+        def opened(source: str, *, operator: bool = False) -> Stream:
+            return stack.enter_context(Stream(server, source, path, operator=operator))
+
+        of_address = [opened("127.0.0.2") for _ in range(SHARE)]
+        assert {stream.status for stream in of_address} == {200}
+        refused = opened("127.0.0.2")
+        assert refused.status == 429
+        assert b"retry-after: 10" in refused.head.lower()
         for _ in range(PLACES - SHARE):
-            assert open_event_stream(server, stack, "127.0.0.3").startswith(b"HTTP/1.1 200")
-        assert open_event_stream(server, stack, "127.0.0.4").startswith(b"HTTP/1.1 200")
-        assert open_event_stream(server, stack, "127.0.0.2", operator=True).startswith(
-            b"HTTP/1.1 200"
-        )
+            assert opened("127.0.0.3").status == 200
+        # All places are taken now: who comes takes that of the newest of whoever has most.
+        assert opened("127.0.0.4").status == 200
+        of_address[-1].wait_for_end()
+        assert opened("127.0.0.2", operator=True).status == 200
+        of_address[-2].wait_for_end()
     # Closed connections free their places.
     with ExitStack() as stack:
         for _ in range(SHARE):
-            assert open_event_stream(server, stack, "127.0.0.5").startswith(b"HTTP/1.1 200")
-        with server.client.stream("GET", "/api/v1/events") as stream:
-            lines = stream.iter_lines()
+            assert opened("127.0.0.5").status == 200
+        with server.client.stream("GET", path) as response:
+            lines = response.iter_lines()
             data = next(line for line in lines if line.startswith("data: "))
             assert json.loads(data.removeprefix("data: "))["role"] == "spectator"

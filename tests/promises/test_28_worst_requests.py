@@ -24,7 +24,7 @@ from starlette.types import Receive, Scope, Send
 
 from app.api.request_headers import MAX_BYTES, READ, READ_BEFORE, DeclaredHeaders
 from tests.promises.length import at_length, only_whole
-from tests.promises.raw import Route, every_route
+from tests.promises.raw import UPGRADE, Route, every_route
 from tests.promises.worst_requests import (
     ADMITTED_BYTES,
     LARGE_BYTES,
@@ -50,6 +50,7 @@ WORST_VALUES = 3
 """Of each header, which are sent to every route in the long form."""
 READ_HERE = "/api/v1/experiments"
 """A route for the headers in the gate: past all middleware, and to the database."""
+UPGRADE_LINES = {name.lower(): value for name, value in UPGRADE.items()}
 _logger = logging.getLogger(__name__)
 
 
@@ -141,8 +142,8 @@ def test_headers_and_cookies_at_their_worst(demo: Demo) -> None:
                 yield f"{name}: {what}, {size}", request("GET", READ_HERE, demo.port, line)
                 if name in READ_BEFORE:
                     yield (
-                        f"{name} of a websocket: {what}, {size}",
-                        request("WS", "/viewer/", demo.port, line),
+                        f"{name} of an upgrade: {what}, {size}",
+                        request("GET", "/viewer/", demo.port, UPGRADE_LINES | line),
                     )
 
     check_costs(demo, requests())

@@ -1,4 +1,4 @@
-"""Locks of a classroom: every route and websocket as a participant, against every card.
+"""Locks of a classroom: every route as a participant, against every card.
 
 The matrix is generated: routes from the app, cards from the built-in lessons. A participant changes
 nothing but by the routes of their own room that the card allows, and by entering its tournaments,
@@ -24,7 +24,7 @@ from tests.timeouts import LONG_S
 
 TOKEN = "a-token-for-tests"
 OPERATOR = f"Authorization: Bearer {TOKEN}"
-READS = {"GET", "HEAD", "WS"}
+READS = {"GET", "HEAD"}
 CARDS = [
     (lesson_id, number, card)
     for lesson_id, lesson in built_in().items()
@@ -64,8 +64,6 @@ class Desk(NamedTuple):
         lines = [line for line in lines if not line.startswith("Content-Length")]
         if method not in READS:
             lines += ["Content-Type: application/json", f"Content-Length: {len(content)}"]
-        if method == "WS":
-            lines.append("Sec-WebSocket-Protocol: viser-v0")
         return send(self.server.port, *lines, *headers, body=content)
 
     def status(self, method: str, path: str, *headers: str, body: Any = None) -> int:
@@ -284,7 +282,8 @@ def test_a_participant_reads_the_data_of_the_room(desks: dict[str, Desk]) -> Non
             address = f"/api/v1/rooms/{desk.code}{path}"
             assert desk.status("GET", address, desk.cookie) == 200
             assert desk.status("GET", f"{room}{address}", desk.cookie) == 200
-        assert desk.status("WS", f"{room}/viewer/", desk.cookie) == 101
+        for path in ("/viewer/", "/api/v1/events?picture=true", "/api/v1/events/snapshot"):
+            assert desk.status("GET", f"{room}{path}", desk.cookie) == 200, path
 
 
 def test_another_room_is_closed_to_a_participant(desks: dict[str, Desk]) -> None:

@@ -1,6 +1,6 @@
 """Promise 43: strangers of a demo do what they may, and nothing of it outlives a day.
 
-The matrix is generated: every route and websocket of the app as a visitor without a cookie, as one
+The matrix is generated: every route of the app as a visitor without a cookie, as one
 with runs, with a forged cookie, and below a room's path; what is open is listed by hand below. A
 server that is killed deletes after its next start what is too old by then.
 """
@@ -25,7 +25,7 @@ from tests.promises.raw import Route, accesses, every_route, request_lines, send
 pytestmark = pytest.mark.test
 
 TOKEN = "a-token-for-tests"
-READS = {"GET", "HEAD", "WS"}
+READS = {"GET", "HEAD"}
 BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20}
 SLOW = {**BODY, "steps": 5000, "pace": 1}
 STARTS = {
@@ -76,8 +76,6 @@ class Demo(NamedTuple):
             path += f"?id={run_id}"
         lines = request_lines(Route(route.method, path), f"127.0.0.1:{self.server.port}")
         lines = [line for line in lines if not line.startswith("Content-Length")]
-        if route.method == "WS":
-            lines.append("Sec-WebSocket-Protocol: viser-v0")
         if route.method not in READS:
             lines += ["Content-Type: application/json", f"Content-Length: {len(body)}"]
         else:

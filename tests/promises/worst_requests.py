@@ -204,25 +204,18 @@ def _is_whole(answer: bytes, *, has_body: bool) -> bool:
     length = re.search(rb"\r\ncontent-length: (\d+)", head.lower())
     if length is not None:
         return len(body) >= int(length[1])
-    return head.startswith(b"HTTP/1.1 101") or b"text/event-stream" in head
+    return b"text/event-stream" in head
 
 
 def request(
     method: str, target: str, port: int, header_lines: Mapping[str, str], body: bytes = b""
 ) -> bytes:
-    """Return the bytes of a request; the method `WS` is the handshake of a websocket."""
+    """Return the bytes of a request."""
     lines: dict[str, str] = {"host": f"127.0.0.1:{port}", "connection": "close"}
-    if method == "WS":
-        lines |= {
-            "connection": "Upgrade",
-            "upgrade": "websocket",
-            "sec-websocket-version": "13",
-            "sec-websocket-key": "dGhlIHNhbXBsZSBub25jZQ==",
-        }
-    elif method not in ("GET", "HEAD", "OPTIONS"):
+    if method not in ("GET", "HEAD", "OPTIONS"):
         lines["content-length"] = str(len(body))
     lines |= header_lines
-    head = f"{'GET' if method == 'WS' else method} {target} HTTP/1.1\r\n"
+    head = f"{method} {target} HTTP/1.1\r\n"
     head += "".join(f"{name}: {value}\r\n" for name, value in lines.items())
     return head.encode("latin-1") + b"\r\n" + body
 
