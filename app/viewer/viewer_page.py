@@ -31,9 +31,8 @@ ALLOWED_QUERY = frozenset(
 def sanitized_query(query: QueryParams) -> str | None:
     """Return the query without parameters that are not allow-listed; None if all are.
 
-    viser's client would connect to any `websocket` and play any `playbackPath`, and run scripts
-    from there, so that a link to our own page could inject them. Allowed are parameters that only
-    change the appearance.
+    viser's client would play any `playbackPath`, and run scripts from there, so that a link to our
+    own page could inject them. Allowed are parameters that only change the appearance.
     """
     items = query.multi_items()
     allowed = [(name, value) for name, value in items if name in ALLOWED_QUERY]

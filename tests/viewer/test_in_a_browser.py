@@ -265,7 +265,7 @@ def test_messages_of_other_pages_are_ignored(stage: Stage, address: str) -> None
 
 
 def test_viewer_that_is_opened_by_itself_goes_to_the_page(page: Page, address: str) -> None:
-    page.goto(f"{address}/viewer/?view=2")
+    page.goto(f"{address}/viewer/?theme=light")
 
     page.wait_for_url(f"{address}/")
 

@@ -34,7 +34,7 @@ HOST = """
   };
   const draw = (messages) => post({ type: "hexapods:draw", messages: messages.map(resolve) });
 </script>
-<iframe src="viewer/?view=1&theme=dark" width="480" height="270"></iframe>
+<iframe src="viewer/?theme=dark" width="480" height="270"></iframe>
 """
 
 

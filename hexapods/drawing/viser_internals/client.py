@@ -47,26 +47,27 @@ def batch_colors(colors: NDArray[np.uint8], brightness: float = 1.0) -> NDArray[
 def content_policy(page: str, *, file_nonce: str | None = None) -> str:
     """Return the page's Content-Security-Policy.
 
-    Besides scripts it allows what viser's client needs: it compiles WebAssembly, runs its
-    websocket in a worker made from a blob, sets styles from scripts, and loads textures as blobs.
+    Besides scripts it allows what viser's client needs: it compiles WebAssembly, starts a worker
+    made from a blob, sets styles from scripts, and loads textures as blobs. Nothing is loaded from
+    a server: what is drawn comes from the page around it, or is in the file.
 
     Args:
         page: the page's HTML, patch included.
         file_nonce: nonce of the element that imports the modules of a page that is a file without
-            a server. Such a page may load nothing else, and be embedded anywhere.
+            a server. Such a page may be embedded anywhere.
 
     Raises:
         RuntimeError: This version of viser packs its client in another way.
     """
-    self_source, ancestors = "'self' ", "; frame-ancestors 'self'"
+    ancestors = "; frame-ancestors 'self'"
     scripts = [_hash(script) for script in page_scripts(page)]
     if file_nonce is not None:
-        self_source, ancestors = "", ""
+        ancestors = ""
         scripts.append(f"'nonce-{file_nonce}'")
     return (
         f"default-src 'none'; script-src 'strict-dynamic' 'wasm-unsafe-eval' {' '.join(scripts)}; "
-        f"worker-src blob:; style-src 'unsafe-inline'; img-src {self_source}blob: data:; "
-        f"connect-src {self_source}blob: data:; base-uri 'none'; form-action 'none'{ancestors}"
+        f"worker-src blob:; style-src 'unsafe-inline'; img-src blob: data:; "
+        f"connect-src blob: data:; base-uri 'none'; form-action 'none'{ancestors}"
     )
 
 

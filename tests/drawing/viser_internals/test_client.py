@@ -178,6 +178,8 @@ def test_installed_client_has_seven_scripts_and_all_are_hashed() -> None:
     script_source = policy.partition("script-src")[2].partition(";")[0]
     for word in ("'unsafe-inline'", "'unsafe-eval'", "'self'", "http"):
         assert word not in script_source
+    for directive in ("img-src blob: data:;", "connect-src blob: data:;", "frame-ancestors 'self'"):
+        assert directive in policy, "it loads nothing from the server"
     not_changed = ViewerPage().response({"if-none-match": headers["etag"]})
     assert not_changed.status_code == 304
     assert not_changed.headers["content-security-policy"] == policy
