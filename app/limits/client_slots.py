@@ -1,4 +1,4 @@
-"""Concurrency limit for long-lived clients (streams, viewers), in total and per address.
+"""Concurrency limit for long-lived clients, as of streams of events, in total and per address.
 
 When all slots are taken, a newcomer from an address with fewer slots evicts the newest client
 of the address with the most, so that many clients behind one address do not exclude others. An

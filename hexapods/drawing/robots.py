@@ -74,8 +74,8 @@ class Robots:
             )
             self._batches.append(handle)
 
-    def draw(self, views: Sequence[LaneFrame | None]) -> bool:
-        """Update poses and legs from the views of the lanes; True if any pose changed.
+    def draw(self, views: Sequence[LaneFrame | None]) -> None:
+        """Update poses and legs from the views of the lanes.
 
         Where a view is None, no robot is drawn.
         """
@@ -94,7 +94,6 @@ class Robots:
                 batch.batched_colors = batch_colors(colors)
                 if batch.batched_scales is not None or not scales.all():
                     batch.batched_scales = scales
-        return moved
 
     def _looks(self, part: Part) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Return colours (lanes · links, 3), 0–255, and scales (lanes · links,), 0 if hidden."""

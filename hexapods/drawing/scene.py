@@ -1,6 +1,5 @@
-"""Draw the stage in viser: each immutable frame becomes one atomic window of messages."""
+"""Draw the stage in viser: each immutable frame becomes the messages by which it differs."""
 
-import math
 from collections.abc import Sequence
 from itertools import zip_longest
 
@@ -19,8 +18,6 @@ SCENE_ROOT = f"{WORLD}/run"
 ROBOT_ROOTS = (f"{SCENE_ROOT}/robots", f"{SCENE_ROOT}/robots2")
 """Scene nodes of the robots, in turn: where one is removed and made again at once, viser's client
 keeps its batched meshes, and draws those of another kind of robot with buffers that do not fit."""
-_SMOOTHING_S = 0.25
-"""Time constant with which the camera follows the leader [s]."""
 _STEP_FORWARD_M = 0.45
 """Shift of the follow point that brings the camera nearer to a single robot [m]."""
 _LANES_IN_VIEW, _STEP_BACK_M = 3, 0.5
@@ -33,43 +30,26 @@ def grid_root(lane: int) -> str:
 
 
 class StageScene:
-    """The stage's scene graph on one viser server.
-
-    Used by one thread; `follow_position` may be called from any.
-    """
+    """The stage's scene graph on one viser server."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
         self._run_scene: _RunScene | None = None
         self._scenes = -1
         self._follow_positions: dict[str, Position] = {}
-        self._smoothed: tuple[float, float] | None = None
         self._lamp_y_m = 0.0
-        with server.atomic():
-            self._lamp = draw_ground(server)
+        self._lamp = draw_ground(server)
 
-    def draw(self, frame: StageFrame, now: float = math.inf) -> bool:
-        """Draw a frame.
-
-        Args:
-            frame: the stage.
-            now: time of the drawing [s], for the exponential smoothing of the follow point.
-
-        Returns:
-            Whether anything moved.
-        """
-        with self._server.atomic():
-            if self._run_scene is None or self._run_scene.spec != frame.spec:
-                if self._run_scene is not None:
-                    self._run_scene.remove()
-                self._scenes += 1
-                root = ROBOT_ROOTS[self._scenes % len(ROBOT_ROOTS)]
-                self._run_scene = _RunScene(self._server, frame.spec, root)
-                self._smoothed = None
-            moved = self._run_scene.draw(frame)
-            moved |= self._update_follow_positions(frame, self._run_scene.xs, now)
-        self._server.flush()
-        return moved
+    def draw(self, frame: StageFrame) -> None:
+        """Draw a frame of the stage."""
+        if self._run_scene is None or self._run_scene.spec != frame.spec:
+            if self._run_scene is not None:
+                self._run_scene.remove()
+            self._scenes += 1
+            root = ROBOT_ROOTS[self._scenes % len(ROBOT_ROOTS)]
+            self._run_scene = _RunScene(self._server, frame.spec, root)
+        self._run_scene.draw(frame)
+        self._update_follow_positions(frame, self._run_scene.xs)
 
     def follow_position(self, view: str) -> Position | None:
         """Return the follow point of a view on the track [m]: `leader`, or a lane from `1`."""
@@ -82,21 +62,14 @@ class StageScene:
             x, y, z = LAMP
             self._lamp.position = (x, y + y_m, z)
 
-    def _update_follow_positions(self, frame: StageFrame, xs: list[float], now: float) -> bool:
-        """Update the follow points; True while the leader's is still moving.
+    def _update_follow_positions(self, frame: StageFrame, xs: list[float]) -> None:
+        """Update the follow points.
 
-        The leader's is on the centre line of the track, so that all lanes stay in view, and is
-        smoothed exponentially, since the lead may change abruptly.
+        The leader's is on the centre line of the track, so that all lanes stay in view.
         """
-        leader = max(lane.distance_m for lane in frame.lanes)
-        lead = next(lane for lane in frame.lanes if lane.distance_m == leader)
-        target_y = float(lead.qpos[1])
-        previous = self._smoothed
-        y_m = target_y
-        if previous is not None and now > previous[0]:
-            y_m = target_y + (previous[1] - target_y) * math.exp((previous[0] - now) / _SMOOTHING_S)
-        self._smoothed = (now, y_m)
-        self._move_lamp(round(target_y / SQUARE_M) * SQUARE_M)
+        leader = max(frame.lanes, key=lambda lane: lane.distance_m)
+        y_m = float(leader.qpos[1])
+        self._move_lamp(round(y_m / SQUARE_M) * SQUARE_M)
         offset_m = (
             _STEP_FORWARD_M
             if len(frame.lanes) == 1
@@ -110,7 +83,6 @@ class StageScene:
                 0.0,
             )
         self._follow_positions = follow_positions
-        return abs(y_m - target_y) > 1e-4
 
 
 class _RunScene:
@@ -162,13 +134,13 @@ class _RunScene:
             self._ghosts = Ghosts(server, f"{SCENE_ROOT}/ghosts", spec, robot, xs[-1])
         self._server = server
 
-    def draw(self, frame: StageFrame) -> bool:
-        """Draw a frame; True if a robot moved."""
+    def draw(self, frame: StageFrame) -> None:
+        """Draw a frame."""
         # Ghosts on lanes beyond those of the run.
         alone = [ghost for ghost in frame.ghost_lanes[len(frame.lanes) :] if ghost is not None]
         self._draw_grounds(frame, alone)
-        moved = self._robots.draw(frame.lanes)
-        moved |= self._draw_ghost_robots(frame.ghost_lanes)
+        self._robots.draw(frame.lanes)
+        self._draw_ghost_robots(frame.ghost_lanes)
         labelled = [*zip_longest(frame.lanes, frame.ghost_lanes[: len(frame.lanes)])]
         labelled += [(ghost, None) for ghost in alone]
         for number, (lane, ghost) in enumerate(labelled):
@@ -185,7 +157,6 @@ class _RunScene:
         self._photo.draw(frame)
         if self._ghosts is not None:
             self._ghosts.draw(frame.ghosts)
-        return moved
 
     def _ghost_name(self, number: int) -> str:
         """Return the name of the ghost on a lane, for the label of the lane."""
@@ -208,18 +179,18 @@ class _RunScene:
             ground.draw(conditions, origin)
         self._lines.raise_over(max(conditions.ground_m(0) for conditions, _ in grounds))
 
-    def _draw_ghost_robots(self, ghosts: Sequence[LaneFrame | None]) -> bool:
+    def _draw_ghost_robots(self, ghosts: Sequence[LaneFrame | None]) -> None:
         """Draw the robots of the other run, over those on the lanes of the same number."""
         if self._ghost_robots is None:
             # Also before a branch parts from its original, so that meshes are sent with the scene.
             if not ghosts:
-                return False
+                return
             spec, root = self._ghost_spec, f"{SCENE_ROOT}/ghost-robots"
             mesh = self._mesh if spec.robot == self.spec.robot else RobotMesh(spec.robot)
             self._ghost_robots = Robots(
                 self._server, root, spec, mesh, self._ghost_xs, is_ghost=True
             )
-        return self._ghost_robots.draw(ghosts or [None] * len(self._ghost_xs))
+        self._ghost_robots.draw(ghosts or [None] * len(self._ghost_xs))
 
     def remove(self) -> None:
         """Remove the nodes of the run from viser's scene."""
