@@ -1,9 +1,9 @@
 """A class over a network: `python benchmarks/classroom.py http://10.77.0.1:8000 --token …`.
 
 Opens rooms, and lets pupils do what the page of a room does: load it with its files, join, follow
-the events, keep the stage's websocket open, answer, start, replay the own robot, and look at the
-results. Every pupil loses all connections once a minute. `poor_network.py` makes a network with
-losses and delays.
+the events, answer, start, replay the own robot, and look at the results; and watch the room's
+stage beside it. Every pupil loses all connections once a minute. `poor_network.py` makes a network
+with losses and delays.
 
 Prints one JSON object: what was lost, which is promised to be nothing; the frames of the stage a
 second that each pupil gets while a run is in the spotlight, which are promised to be 25 or more;
@@ -24,16 +24,11 @@ import time
 from collections import defaultdict
 from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from urllib.parse import urljoin, urlsplit
 
 import httpx2
-import viser
-from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import InvalidHandshake, WebSocketException
-from websockets.typing import Subprotocol
 
 _LESSON, _CARD = "one-run-proves-nothing", 1
 _FILE = re.compile(r'(?:href|src)="([^"]+\.(?:js|css|svg))"')
@@ -43,7 +38,7 @@ _TIMEOUT_S = 60.0
 _ARRIVE_WITHIN_S = 10.0
 _PATIENCE_S = 900.0
 _REPLAY_LEVEL, _SEGMENTS = 1, 6
-_EVENT_RETRY_S, _VIEWER_RETRY_S, _AGAIN_S = 1.0, 1.0, 1.0
+_EVENT_RETRY_S, _AGAIN_S = 1.0, 1.0
 _HEADERS = {"X-Requested-With": "hexapods", "Accept-Encoding": "gzip"}
 
 
@@ -52,8 +47,8 @@ class Phone:
 
     Attributes:
         took_s: how long each deed took, by its name.
-        frames_s: times at which a frame of the stage came.
-        size_bytes: of the frames.
+        frames: times at which frames of the stage came, and how many.
+        size_bytes: of the events with them.
         drops: how often all connections were lost.
     """
 
@@ -64,18 +59,17 @@ class Phone:
         self._cookies = httpx2.Cookies()
         self._client = self._new_client()
         self._ongoing: set[asyncio.Task[Any]] = set()
-        self._stage: ClientConnection | None = None
         self._is_online = asyncio.Event()
         self._is_online.set()
         self._changed = asyncio.Event()
         self._texts: dict[str, str] = {}
         self.took_s: defaultdict[str, list[float]] = defaultdict(list)
-        self.frames_s: list[float] = []
+        self.frames: list[tuple[float, int]] = []
         self.size_bytes = 0
         self.drops = 0
 
     def _new_client(self) -> httpx2.AsyncClient:
-        limits = httpx2.Limits(max_connections=_AT_ONCE + 1)
+        limits = httpx2.Limits(max_connections=_AT_ONCE + 2)
         return httpx2.AsyncClient(
             base_url=self._address, cookies=self._cookies, limits=limits, timeout=_TIMEOUT_S,
             headers=_HEADERS, trust_env=False,
@@ -95,7 +89,7 @@ class Phone:
                 asyncio.create_task(self._watch_stage()),
             ]
             await self.call("see the room", "GET", path)
-            await self._timed("load the picture", self._get(f"/r/{self._room}/viewer/?view=leader"))
+            await self._timed("load the picture", self._get(f"/r/{self._room}/viewer/"))
             value = round(self._chance.uniform(0, 0.6), 2)
             answer = {"card": _CARD, "value": value}
             stored_answer = await self.call("answer", "POST", f"{path}/predictions", answer)
@@ -211,27 +205,20 @@ class Phone:
             await asyncio.sleep(_EVENT_RETRY_S)
 
     async def _watch_stage(self) -> None:
-        url = f"ws{self._address[4:]}/r/{self._room}/viewer/?view=leader"
-        cookies = "; ".join(f"{name}={value}" for name, value in self._cookies.items())
+        path = f"/r/{self._room}/api/v1/events?picture=true"
         while True:
-            with suppress(OSError, WebSocketException, InvalidHandshake, TimeoutError):
+            with suppress(httpx2.HTTPError, RuntimeError):
                 await self._is_online.wait()
-                async with connect(
-                    url,
-                    subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
-                    additional_headers={"Cookie": cookies},
-                    compression=None,
-                    max_size=None,
-                    ping_interval=None,
-                    close_timeout=0.1,
-                    open_timeout=_TIMEOUT_S,
-                    proxy=None,
-                ) as self._stage:
-                    while True:
-                        self.size_bytes += len(await self._stage.recv(decode=False))
-                        self.frames_s.append(time.monotonic())
-            self._stage = None
-            await asyncio.sleep(_VIEWER_RETRY_S)
+                async with self._client.stream("GET", path, timeout=None) as stream:
+                    event = ""
+                    async for line in stream.aiter_lines():
+                        field, _, value = line.partition(": ")
+                        if field == "event":
+                            event = value
+                        elif field == "data" and event == "piece":
+                            self.size_bytes += len(line)
+                            self.frames.append((time.monotonic(), json.loads(value)["count"]))
+            await asyncio.sleep(_EVENT_RETRY_S)
 
     async def _be_dropped(self, every_s: float) -> None:
         """Lose all connections every so often, for one to three seconds."""
@@ -241,8 +228,6 @@ class Phone:
             self._is_online.clear()
             for task in self._ongoing:
                 task.cancel()
-            if self._stage is not None:
-                self._stage.transport.abort()
             client, self._client = self._client, self._new_client()
             await client.aclose()
             await asyncio.sleep(self._chance.uniform(1.0, 3.0))
@@ -323,8 +308,8 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
     for code in codes:
         await teacher.call("POST", f"/api/v1/rooms/{code}/end")
     rates = [
-        sum(lit_s <= frame_ < lit_s + watched_s for frame_ in p.frames_s) / watched_s
-        for p in phones
+        sum(count for at_s, count in phone.frames if lit_s <= at_s < lit_s + watched_s) / watched_s
+        for phone in phones
     ]
     took: defaultdict[str, list[float]] = defaultdict(list)
     for phone in phones:
@@ -343,9 +328,6 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
             "lowest": round(min(rates), 1),
             "below_25": sum(rate < 25 for rate in rates),
         },
-        "frames_per_s_while_they_come": round(
-            statistics.median(_steady(p, lit_s, watched_s) for p in phones), 1
-        ),
         "kB_per_s_each": round(size_bytes / watched_s / len(phones) / 1e3, 1),
         "seconds": {
             deed: {"median": round(statistics.median(each), 2), "most": round(max(each), 2)}
@@ -358,13 +340,6 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
             "memory_MB": round(meter.memory_bytes() / 1e6),
         },
     }
-
-
-def _steady(phone: Phone, from_s: float, for_s: float) -> float:
-    """Return the frames a second without the gaps of a second or more, as after a drop."""
-    times = [frame_ for frame_ in phone.frames_s if from_s <= frame_ < from_s + for_s]
-    gaps = [b - a for a, b in pairwise([from_s, *times, from_s + for_s])]
-    return len(times) / max(1e-9, sum(gap for gap in gaps if gap < 1.0))
 
 
 async def _all_finished(phones: list[Phone]) -> None:
