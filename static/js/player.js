@@ -284,13 +284,13 @@ function ownMoment(elapsed_s) {
   const [time_s, end_s] = [position.peek(), bounds.peek().computed_s];
   const rate = isMoving() ? speed.peek() : 0;
   const { version, complete } = replayPlan;
-  const next_s = Math.min(after(1), end_s);
-  return { clock: clock.peek(), version, time_s, rate, next_s, end_s, isGrowing: !complete };
+  return { clock: clock.peek(), version, time_s, rate, next_s: Math.min(after(1), end_s), end_s, isGrowing: !complete };
 }
 
 /** Follow the stage; while that is not heard its last picture stays. @returns {Wanted | null} */
 function stageMoment(/** @type {number} */ now, /** @type {number} */ elapsed_s) {
   const [head, shownStage] = [playhead.peek(), stage.peek()];
+  if (isAway.peek()) followed_s = NaN;
   if (!head || !shownStage?.run_id || isAway.peek()) return null;
   const { clock: timedBy, version, live: isGrowing } = shownStage;
   const end_s = head.computed_s;

@@ -1,4 +1,4 @@
-// What the page plays: what it asks the server for, and what it draws.
+// A replay of the page's own: what it asks the server for, and what it draws.
 import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
 import { problems, setStage, showOnStage } from "../../static/js/actions.js";
@@ -8,24 +8,13 @@ import {
   setReplaySpeed, tick,
 } from "../../static/js/player.js";
 import { applyEvent } from "../../static/js/store.js";
+import { encoded } from "./frames.js";
 import { makeRun } from "./options.js";
 
 const PLAN = {
   run_id: "a", kind: "race", complete: true, duration_s: 4, recorded_s: [[0, 4]], step_ends_s: [[1, 2, 3, 4]],
   marks: [], frame_s: 1 / 30, segment_frames: 64, lowest_level: -3, highest_level: 7,
 };
-
-/** Frames as the server encodes them. @param {number[]} times_s */
-function encoded(...times_s) {
-  const frames = times_s.map((time_s) => (
-    { time_s, follow: { leader: [time_s, time_s], 2: [1, time_s] }, scene: null, messages: [] }
-  ));
-  const head = new TextEncoder().encode(JSON.stringify({ lengths: [], world: "/world", frames }));
-  const data = new Uint8Array(4 + head.length);
-  new DataView(data.buffer).setUint32(0, head.length, true);
-  data.set(head, 4);
-  return data;
-}
 
 /** Requests, by the last part of the address. @type {string[]} */
 let requests = [];

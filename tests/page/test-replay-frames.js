@@ -1,7 +1,7 @@
 // Frames of a replay: whatever was shown before, after a jump the 3D view shows that moment.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { decode, SceneState } from "../../static/js/replay-frames.js";
+import { approached, decode, Follower, momentOf, nextStep, SceneState, unpack } from "../../static/js/replay-frames.js";
 
 /** @import { Message } from "../../static/js/replay-frames.js" */
 
@@ -109,6 +109,68 @@ const encoded = (head, packed, blocks) => {
   return new Uint8Array(bytes).buffer;
 };
 const frameOf = (/** @type {any[]} */ ...messages) => ({ time_s: 1, follow: {}, scene: null, messages });
+
+test("another version of the scene is shown by what differs alone, from the next moment on", () => {
+  const state = scene();
+  const browser = new Browser().take(state.restart());
+  browser.take(state.jump([place("/robot", 5), create("/ghost")]));
+  const renamed = [create("/robot", { color: "red" }), create("/flag", { visible: true }), create("/robot/plate")];
+  state.rebase({ frames: [{ time_s: 0, messages: renamed, follow: {}, scene: null }] });
+  const sent = state.jump([place("/robot", 5)]);
+
+  assert.deepEqual(browser.take(sent).picture, new Browser().take([...renamed, place("/robot", 5)]).picture);
+  const made = sent.filter(({ type }) => type === "MeshMessage").map(({ name }) => name);
+  assert.deepEqual(made, ["/flag", "/robot/plate"]);
+});
+
+// ---- the moment that is shown
+
+const HEAD = { at_s: 100, rate: 2, computed_s: 50, duration_s: null, time_out_s: null };
+/** @type {[number, number][]} */
+const POINTS = [[0, 4], [1, 6], [4, 6], [5, 8]];
+
+test("the picture goes in straight lines between the points of the playhead, then at its rate", () => {
+  const at = (/** @type {number} */ server_s) => Object.values(momentOf({ ...HEAD, points: POINTS }, server_s));
+  assert.deepEqual([99, 100, 100.5, 102, 104.5, 107].map(at),
+    [[4, 2], [4, 2], [5, 2], [6, 0], [7, 2], [12, 2]]);
+  assert.deepEqual(momentOf({ ...HEAD, rate: 0, points: [[0, 4]] }, 130), { time_s: 4, rate: 0 });
+  assert.deepEqual(momentOf({ ...HEAD, points: [[0, 4], [1, 5], [1, 30]] }, 101), { time_s: 30, rate: 2 },
+    "a gap of the recording is left out");
+});
+
+test("a small error is made up for a tenth faster or slower, a large one and one of a held picture at once", () => {
+  assert.equal(approached(10, 10.5, 2, 0.1).toFixed(3), "10.220");
+  assert.equal(approached(10, 10.1, 2, 0.1).toFixed(3), "10.180");
+  assert.equal(approached(10, 10.2, 2, 0.1), 10.2);
+  assert.equal(approached(10, 14, 2, 0.1), 14);
+  assert.equal(approached(10, 9.9, 0, 0.1), 9.9);
+  assert.equal(approached(NaN, 3, 2, 0.1), 3);
+});
+
+test("the next step is that of the lane that is followed, or of any", () => {
+  const plan = /** @type {any} */ ({ step_ends_s: [[1, 3], [2, 4]] });
+  assert.deepEqual([nextStep(plan, 1, 1, 1), nextStep(plan, NaN, 1, 1), nextStep(plan, 0, 3, 1)], [2, 2, null]);
+  assert.deepEqual([nextStep(plan, 1, 4, -1), nextStep(plan, NaN, 1, -1)], [2, 0]);
+});
+
+test("a camera that follows nothing leaves the world where it is", () => {
+  const [follower, state] = [new Follower(), scene()];
+  const frame = { time_s: 0, messages: [], follow: { leader: [1, 2], 2: [3, 4] }, scene: null };
+  const centred = (/** @type {string} */ view) => follower.centring(state, /** @type {any} */ (frame), view, Infinity);
+  assert.deepEqual(centred("leader").position, [-1, -2, 0]);
+  assert.deepEqual(centred("2").position, [-3, -4, 0]);
+  assert.deepEqual(centred("free").position, [-3, -4, 0]);
+});
+
+test("frames that are pushed as text are those that are fetched", async () => {
+  const head = new TextEncoder().encode(JSON.stringify({ lengths: [], frames: [{ time_s: 2, messages: [] }] }));
+  const bytes = new Uint8Array(4 + head.length);
+  new DataView(bytes.buffer).setUint32(0, head.length, true);
+  bytes.set(head, 4);
+  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("gzip"));
+  const packed = await new Response(stream).arrayBuffer();
+  assert.deepEqual(await unpack(btoa(String.fromCharCode(...new Uint8Array(packed)))), decode(bytes.buffer));
+});
 
 test("arrays are read from behind the JSON, each with memory of its own", () => {
   const data = encoded({
