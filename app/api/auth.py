@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.active_features import Features
 from app.api.cookies import SessionCookie, is_secure
 from app.api.identity import Identity, run_ids_of
-from app.api.policy import policy_of
+from app.api.policy import WATCH_REPLAY, WATCH_RUN, WATCH_STAGE, policy_of
 from app.api.problems import problem
 from app.api.rate_limit import too_many
 from app.api.stage_paths import stage_of
@@ -87,10 +87,16 @@ class TokenGuard:
 
     def _refusal(self, scope: Scope, roles: Roles, identity: Identity | None) -> ASGIApp | None:
         """Return the refusal of a request of no operator; None if it is allowed."""
+        access, as_spectator, on_stage = policy_of(scope).access, None, None
+        if access is WATCH_REPLAY:
+            run_id = scope["path_params"]["run_id"]
+            on_stage = run_id if run_id == stage_of(scope).stage.run_id else None
+            access = WATCH_RUN if on_stage is None else WATCH_STAGE
         for run_id in run_ids_of(scope):
+            if run_id == on_stage:
+                continue
             if (why := self._features.why_hidden(run_id, identity)) is not None:
                 return problem(403, why)
-        access, as_spectator = policy_of(scope).access, None
         if not access.admits_spectators(is_public=roles.is_public):
             as_spectator = _unauthorized(f"This needs the operator: {_AUTH_HINT}.")
         if identity is None:

@@ -66,6 +66,9 @@ WATCH_RUN = Access(name="watch run", spectators="watching", is_read=True)
 """Shows something of the run `run_id` of the path."""
 WATCH_STAGE = Access(name="watch stage", spectators="watching", is_read=True)
 """Shows what is on the stage of the path."""
+WATCH_REPLAY = Access(name="watch replay", spectators="watching", is_read=True)
+"""Shows the picture of the run `run_id` of the path: as `WATCH_RUN`, or as `WATCH_STAGE` while that
+run is on the stage of the path, even if it is hidden otherwise."""
 ANY_PAGE = Access(name="any page", spectators="watching", is_read=True)
 """Tells what every page needs, whatever it shows."""
 QUESTION = Access(name="question", spectators="watching")

@@ -10,7 +10,7 @@ from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
 from app.api.fields import RunId
-from app.api.policy import WATCH_RUN, WATCH_STAGE, api_router, policy
+from app.api.policy import WATCH_REPLAY, WATCH_STAGE, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.runs import RunPath
 from app.api.work import ANALYSIS
@@ -30,7 +30,7 @@ GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 
 
 @router.get("", summary="Get a replay's plan: intervals, steps and marks")
-@policy(access=WATCH_RUN, work=ANALYSIS)
+@policy(access=WATCH_REPLAY, work=ANALYSIS)
 def get_replay(
     services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper", ghost: GhostQuery = None
 ) -> RecordResponse[ReplayView]:
@@ -48,7 +48,7 @@ def get_replay(
     response_class=Response,
     responses=_FRAMES,
 )
-@policy(access=WATCH_RUN, work=ANALYSIS)
+@policy(access=WATCH_REPLAY, work=ANALYSIS)
 def get_replay_scene(
     services: ServicesDep, request: Request, run_id: RunPath, ghost: GhostQuery = None
 ) -> Response:
@@ -72,7 +72,7 @@ def get_start_line(services: ServicesDep, request: Request) -> Response:
 @router.get(
     "/moment", summary="Get one frame of a replay", response_class=Response, responses=_FRAMES
 )
-@policy(access=WATCH_RUN, work=ANALYSIS)
+@policy(access=WATCH_REPLAY, work=ANALYSIS)
 def get_replay_moment(
     *,
     services: ServicesDep,
@@ -92,7 +92,7 @@ def get_replay_moment(
     response_class=Response,
     responses=_FRAMES,
 )
-@policy(access=WATCH_RUN, work=ANALYSIS)
+@policy(access=WATCH_REPLAY, work=ANALYSIS)
 def get_replay_posture(
     *,
     services: ServicesDep,
@@ -134,7 +134,7 @@ async def _segment_key(
     response_class=Response,
     responses=_FRAMES,
 )
-@policy(access=WATCH_RUN, work=ANALYSIS)
+@policy(access=WATCH_REPLAY, work=ANALYSIS)
 def get_replay_segment(
     *,
     services: ServicesDep,

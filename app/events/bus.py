@@ -5,7 +5,6 @@ ring buffer replays the other events to subscribers that reconnect with `Last-Ev
 """
 
 import asyncio
-import contextlib
 import itertools
 import threading
 import time
@@ -146,12 +145,15 @@ class Subscription:
         ready.set()
         try:
             while True:
-                with contextlib.suppress(TimeoutError):
+                is_idle = False
+                try:
                     async with asyncio.timeout(idle_s):
                         await ready.wait()
+                except TimeoutError:
+                    is_idle = True
                 ready.clear()
                 events = self.drain()
-                if events or not self._closed:
+                if events or is_idle:
                     yield events
                 if self._closed:
                     return

@@ -213,7 +213,7 @@ class Stage:
             self._update_playlist()
             run = self._store.get(run_id)
             wanted = [*run.waiting_for, run_id]
-            if self._state.is_held and self._run_id not in wanted:
+            if self._state.is_held and self.run_id not in wanted:
                 return run_id in self._runs
             self._load(wanted, "started")
             self.changed.set()
@@ -281,7 +281,7 @@ class Stage:
             state, ids = self._state, [run.id for run in self._state.playlist]
             members: Mapping[str, Any] = self._members
             return self._view(
-                run_id=self._run_id,
+                run_id=self.run_id,
                 kind=self._show.spec.kind,
                 phase=state.phase,
                 origin=state.origin,
@@ -328,7 +328,7 @@ class Stage:
         with self._lock:
             run = self._state.run
             is_computed = run is not None and run.is_computed
-            return Picture(self._run_id, self._version, self._clock, self._playhead, is_computed)
+            return Picture(self.run_id, self._version, self._clock, self._playhead, is_computed)
 
     def publish(self) -> None:
         """Publish a `stage` event."""
@@ -341,12 +341,14 @@ class Stage:
             return scene_view(self._show.frame(self._run_label()))
 
     @property
-    def _run_id(self) -> str | None:
-        return self._state.run.id if self._state.run else None
+    def run_id(self) -> str | None:
+        """Id of the run on stage. Waits for nothing."""
+        run = self._state.run
+        return run.id if run else None
 
     @property
     def _version(self) -> str | None:
-        return version_of(self._runs[self._run_id]) if self._run_id else None
+        return version_of(self._runs[self.run_id]) if self.run_id else None
 
     def _move(self, now: float) -> None:
         """Advance the show to a time of the clock [s], as far as the run is recorded."""
@@ -430,9 +432,9 @@ class Stage:
         changes = self._changes.drain()
         if not changes:
             return
-        before, on_stage, version = self._state, self._run_id, self._version
+        before, on_stage, version = self._state, self.run_id, self._version
         resumed = [self._apply(event) for event in changes]
-        if self._run_id != on_stage or any(resumed):
+        if self.run_id != on_stage or any(resumed):
             self._begin()
         elif self._state != before or self._version != version:
             self._publish()
@@ -453,7 +455,7 @@ class Stage:
             return False
         self._runs[run_id] = changed
         self._state = self._state.change(_staged(changed))
-        if run_id != self._run_id:
+        if run_id != self.run_id:
             return False
         self._world = world_of(changed)
         # The bus keeps only the newest of several events: the race may have ended again since.
@@ -534,7 +536,7 @@ class Stage:
 
     def _keep_moment(self, original: StagedRun | None, time_s: float) -> None:
         """Show a race that branches off from the one before at the moment at which both part."""
-        config = self._runs[self._run_id].config if self._run_id else None
+        config = self._runs[self.run_id].config if self.run_id else None
         branch = config.branch_from if isinstance(config, RaceConfig) else None
         if branch and original and branch.race_id == original.id:
             if isinstance(self._show, RaceShow):
@@ -549,7 +551,7 @@ class Stage:
 
     def _begin(self) -> None:
         """Begin the show of the run that the state machine has put on stage."""
-        run_id = self._run_id
+        run_id = self.run_id
         if run_id is None:
             show: Show = IdleShow()
             world = UNDISTURBED

@@ -348,5 +348,10 @@ def test_replay_that_cannot_be_says_why(
     refused(api.call("GET", f"{posture}1,2,3&lane=3"), 422, "Lane must be from 0 to 2, not 3")
     refused(api.call("GET", f"{posture}1,2,3&time_s=nan"), 422, "time_s must be a number")
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 100_000}}])
-    refused(api.call("GET", f"/runs/{queued['id']}/replay"), 409, "has no recording")
+    assert api.get(f"/runs/{queued['id']}/replay")["recorded_s"] == []
+    refused(
+        api.call("GET", f"/runs/{queued['id']}/replay/segments/0/0"), 404, "nothing is recorded"
+    )
     api.stop(queued)
+    refused(api.call("GET", f"/runs/{queued['id']}/replay"), 409, "has no recording")
+    assert api.call("GET", f"/runs/{queued['id']}/replay/scene").status_code == 200

@@ -79,13 +79,18 @@ def test_a_pushed_segment_is_the_same_bytes_as_a_fetched_one(parts: FedParts) ->
     assert (segment["run_id"], segment["version"]) == (run.id, fetched.version)
 
 
-def test_after_a_jump_a_few_frames_come_first(parts: FedParts) -> None:
+def test_after_a_jump_a_few_frames_come_before_their_segment(parts: FedParts) -> None:
     run = parts.finished_race(steps=30)
     parts.stage.set(run_id=run.id, speed=1, time_s=4.0)
-    first, segment = parts.pieces(lambda pieces: len(pieces) == 2)
-    assert first["count"] < 10
-    assert first["first"] == pytest.approx(4.0 / interval_s(0), abs=3)
-    assert (segment["first"], segment["count"]) == (64, SEGMENT_FRAMES)
+    pieces = parts.pieces(lambda pieces: any(map(is_segment, pieces)))
+    # A busy machine may be late for the first ones, and try again.
+    *first_pieces, segment = pieces[: 1 + next(n for n, p in enumerate(pieces) if is_segment(p))]
+    assert first_pieces
+    for piece in first_pieces:
+        assert piece["count"] < 10
+        assert segment["first"] <= piece["first"] < segment["first"] + segment["count"]
+        begins_s = piece["first"] * interval_s(0)
+        assert begins_s == pytest.approx(time_at(piece["playhead"], piece["sent_s"]), abs=0.5)
 
 
 def test_of_a_picture_that_is_held_the_very_frame_comes_once(parts: FedParts) -> None:

@@ -50,6 +50,22 @@ def test_a_hidden_run_stays_hidden_where_its_feature_is_left_out(
         assert len(api.call("GET", "/runs", headers=BEARER).json()["items"]) == 2
 
 
+def test_the_picture_of_a_hidden_run_is_seen_while_an_operator_shows_it_to_all(
+    with_hidden_run: Path,
+) -> None:
+    picture = "/api/v1/runs/hidden/replay/scene"
+    with running(Settings(data=with_hidden_run, token=TOKEN)) as api:
+        assert api.client.get(picture).status_code == 403
+        api.call("PUT", "/stage", json={"run_id": "hidden"}, headers=BEARER)
+        assert api.client.get(picture).status_code == 200
+        for path in PATHS_OF_HIDDEN:
+            assert api.client.head(f"/api/v1{path}").status_code == 403, path
+        ghost = "/api/v1/runs/shown/replay/scene?ghost=hidden"
+        assert api.client.get(ghost).status_code != 200
+        api.call("PUT", "/stage", json={"run_id": "shown"}, headers=BEARER)
+        assert api.client.get(picture).status_code == 403
+
+
 @needs("tournaments")
 def test_tournaments_of_open_rooms_stay_closed_without_the_classroom(tmp_path: Path) -> None:
     with running(Settings(data=tmp_path, token=TOKEN)) as api:
