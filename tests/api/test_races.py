@@ -349,9 +349,7 @@ def test_replay_that_cannot_be_says_why(
     refused(api.call("GET", f"{posture}1,2,3&time_s=nan"), 422, "time_s must be a number")
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 100_000}}])
     assert api.get(f"/runs/{queued['id']}/replay")["recorded_s"] == []
-    refused(
-        api.call("GET", f"/runs/{queued['id']}/replay/segments/0/0"), 404, "nothing is recorded"
-    )
+    refused(api.call("GET", f"/runs/{queued['id']}/replay/segments/0/0"), 404, "is recorded yet")
     api.stop(queued)
     refused(api.call("GET", f"/runs/{queued['id']}/replay"), 409, "has no recording")
     assert api.call("GET", f"/runs/{queued['id']}/replay/scene").status_code == 200
