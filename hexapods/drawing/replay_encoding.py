@@ -91,12 +91,13 @@ def _frames(replay: Replay, times_s: Sequence[float], check: Check) -> Iterator[
             check()
             frame = replay.frame_at(time_s)
             stage_scene.draw(frame)
+            has_figures = number < 0 or number % _FRAMES_PER_SCENE == 0
             yield (
                 recording.take(),
                 {
                     "time_s": frame.time_s,
                     "follow": _follow_points(frame, stage_scene),
-                    "scene": None if number % _FRAMES_PER_SCENE else to_json(scene_view(frame)),
+                    "scene": to_json(scene_view(frame)) if has_figures else None,
                 },
             )
 

@@ -1,11 +1,10 @@
 // The picture of a run: keeps the frames that have come, requests those that lack, and sends the 3D view what it needs
 // to be at a moment.
 import { signal } from "@preact/signals";
-import { SAME_MOMENT_S } from "./format.js";
 import { Follower, SceneState } from "./replay-frames.js";
 
 /** @import { Frame, Frames, Message } from "./replay-frames.js" */
-/** @import { Clock, Playback, Scene } from "./types.js" */
+/** @import { Clock } from "./types.js" */
 
 // ---- frames. At level 0 there are FRAMES_PER_S in a second of the run's time, at each level above half as many, as
 // hexapods/shows/replay.py has them
@@ -176,6 +175,8 @@ const removal = ({ world }) => ({ type: "RemoveSceneNodeMessage", name: world, o
 
 /** What the stage pushes comes within this time; what has not come by then is requested [ms]. */
 const [GRACE_MS, GRACE_OF_MOMENT_MS] = [400, 300];
+/** Of a run that is computed pieces come when they are due, and later where the server has more to do than it can. */
+const GRACE_OF_GROWING_MS = 1500;
 /** The leader is followed smoothly over as much of the picture's time, and to where the picture stops [s]. */
 const [LONGEST_STEP_S, LONGEST_STOP_S] = [1, 0.1];
 
@@ -226,13 +227,21 @@ export class Picture {
     this.firstScene = await this.request("scene");
   }
 
-  /** Begin the scene in the 3D view, in place of what it has. */
-  begin() {
+  /** Begin the scene in the 3D view, in place of what it has. @param {string} view */
+  begin(view) {
     if (!this.firstScene) return;
     this.state = new SceneState(this.edition?.scene ?? this.firstScene);
     sceneCount.value += 1;
-    draw([removal(this.state), ...this.state.start]);
+    const [start] = this.firstScene.frames;
+    draw([removal(this.state), ...this.state.start, follower.centring(this.state, start, view, Infinity)]);
     this.shown = NOTHING;
+  }
+
+  /** The figures of what is drawn, and their time; of a run that has recorded nothing those of its start. */
+  /** @param {number} end_s of what is recorded */
+  figuresOf(end_s) {
+    const { scene } = (this.edition?.scene ?? this.firstScene)?.frames[0] ?? { scene: null };
+    return end_s > 0 ? this.shown : { figures: scene, time_s: 0 };
   }
 
   /** Remove what is drawn. */
@@ -323,8 +332,7 @@ export class Picture {
   requestMissing(edition, { time_s, next_s, rate, end_s, isGrowing }, now) {
     if (end_s <= 0) return;
     const isHeld = rate === 0;
-    const grace_ms = this.isPushed ? (isHeld ? GRACE_OF_MOMENT_MS : GRACE_MS) : 0;
-    // Of a run that is computed, pieces come when they are due.
+    const grace_ms = isGrowing ? GRACE_OF_GROWING_MS : isHeld ? GRACE_OF_MOMENT_MS : GRACE_MS;
     const isNextDue = !isHeld && !(isGrowing && this.isPushed);
     const isHere = [
       isHeld ? edition.exactly(time_s) !== null : edition.has(time_s, rate, end_s),
@@ -332,7 +340,7 @@ export class Picture {
     ];
     this.lacking = this.lacking.map((since, n) => (isHere[n] ? null : since ?? now));
     for (const [n, since] of this.lacking.entries()) {
-      if (since === null || now - since < grace_ms) continue;
+      if (since === null || (this.isPushed && now - since < grace_ms)) continue;
       if (isHeld) edition.requestMoment(time_s);
       else {
         this.isPushed = false;
@@ -371,30 +379,3 @@ export class Picture {
 
 /** Take the 3D view in which to draw. @param {(messages: Message[]) => void} take */
 export const drawWith = (take) => (draw = take);
-
-// ---- its figures
-
-/** A live race that has so little left to show waits for a robot that decides [s]. */
-const NOTHING_LEFT_S = 0.1;
-
-/**
- * How a run is shown: the moment, and how far it can be shown.
- * @typedef {Pick<Scene, "time_s" | "computed_s" | "duration_s" | "time_out_s"> &
- *   { rate: number, isOwn: boolean }} Shown
- */
-
-/** The figures of a frame, with what holds of how it is played. */
-/** @type {(figures: Scene, how: Playback, shown: Shown) => Scene} */
-export const sceneOf = (figures, how, shown) => ({
-  ...figures, time_s: shown.time_s, computed_s: shown.computed_s, duration_s: shown.duration_s,
-  time_out_s: shown.time_out_s, phase: phaseOf(figures, how, shown), playing: how.playing, ended: how.ended,
-  shown_speed: shown.rate, clock: how.clock, replay: shown.isOwn || how.origin === "automatic",
-});
-
-/** @type {(figures: Scene, how: Playback, shown: Shown) => string} */
-function phaseOf({ kind, phase }, { playing }, { time_s, rate, isOwn, computed_s, duration_s, time_out_s }) {
-  if (kind !== "race" || phase === "finished") return phase;
-  if (rate === 0 && time_out_s !== null && Math.abs(time_s - time_out_s) <= SAME_MOMENT_S) return "photo-finish";
-  const isLive = !isOwn && duration_s === null && playing;
-  return isLive && computed_s - time_s < NOTHING_LEFT_S ? "waiting" : phase;
-}

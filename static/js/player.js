@@ -4,8 +4,9 @@
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, getReplayFrames, getStartLine, isLasting } from "./api.js";
 import { SAME_MOMENT_S } from "./format.js";
+import { sceneOf } from "./narrative/moment.js";
 import { change, page } from "./page-state.js";
-import { drawWith, Picture, sceneOf } from "./picture.js";
+import { drawWith, Picture } from "./picture.js";
 import {
   approached, decode, endOf, inRecording, momentOf, nextStep, stepsUntil, timeOutOf, unpack,
 } from "./replay-frames.js";
@@ -84,7 +85,6 @@ const source = computed(() => {
 let opened = "";
 /** @type {Picture | null} */
 let picture = null;
-/** Whether the plan is requested again. */
 let isGrowthPending = false;
 
 /**
@@ -130,7 +130,7 @@ async function open(id, ghost, isPushed, time_s) {
     await Promise.all([answer, opening.open()]);
     if (picture !== opening) return;
     plan.value = await answer;
-    opening.begin();
+    opening.begin(page.camera.peek());
     if (isReplay) seekReplay(time_s);
   } catch (error) {
     retryAfter(error, opening, () => load(time_s));
@@ -179,7 +179,7 @@ function forget() {
 /** Take the 3D view in which to draw; what it had is gone. @param {(messages: Message[]) => void} take */
 export function drawIn(take) {
   drawWith(take);
-  picture?.begin();
+  picture?.begin(page.camera.peek());
 }
 
 /** Take frames that the stage has pushed. @param {NonNullable<typeof newestPiece.value>} message */
@@ -262,7 +262,7 @@ export function tick(now) {
     const isHere = shown.show(wanted, page.camera.peek(), now, elapsed_s);
     isBuffering.value = wanted.rate > 0 && !isHere;
     takePosition(wanted, isHere, now);
-    tell(wanted.rate, now);
+    tell(wanted, now);
   }
   shown.centreFor(page.camera.peek());
   if (isOwn.peek()) grow(now);
@@ -291,7 +291,7 @@ function ownMoment(elapsed_s) {
 function stageMoment(/** @type {number} */ now, /** @type {number} */ elapsed_s) {
   const [head, shownStage] = [playhead.peek(), stage.peek()];
   if (isAway.peek()) followed_s = NaN;
-  if (!head || !shownStage?.run_id || isAway.peek()) return null;
+  if (!head || !shownStage || isAway.peek()) return null;
   const { clock: timedBy, version, live: isGrowing } = shownStage;
   const end_s = head.computed_s;
   const after = (/** @type {number} */ s) => momentOf(head, serverClock.at(now / 1000 + s));
@@ -319,9 +319,9 @@ let told = /** @type {unknown[]} */ ([]);
 let toldAt = -Infinity;
 
 /** Let the page know the moment: at once where it is held or something has changed. */
-/** @type {(rate: number, now: number) => void} */
-function tell(rate, now) {
-  const { figures, time_s } = picture?.shown ?? { figures: null, time_s: 0 };
+/** @type {(wanted: Wanted, now: number) => void} */
+function tell({ rate, end_s }, now) {
+  const { figures, time_s } = picture?.figuresOf(end_s) ?? { figures: null, time_s: 0 };
   const [known, how] = [bounds.peek(), playback.peek()];
   if (!figures || !how) return;
   const state = [how, known.duration_s, known.time_out_s, rate, figures, time_s, known.computed_s];

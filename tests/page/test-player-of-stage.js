@@ -192,3 +192,23 @@ test("a page that is not seen draws nothing, and is told the figures all the sam
   await wait(1);
   assert.ok(Math.abs(drawn_s() - position.value) < 0.2);
 });
+
+test("of a run that has recorded nothing the page is told its start, until there is a frame", async () => {
+  await follow(() => stageShows(0, 0, { computed_s: 0, phase: "live" }));
+  await wait(3);
+  assert.deepEqual([requests, scene.value?.label, scene.value?.time_s], [["scene"], "A", 0]);
+  stageShows(1, 0);
+  await push(0, 1, { level: null, first: null, time_s: 1 });
+  await wait(2);
+  assert.equal(scene.value?.time_s, 1);
+});
+
+test("what is late of a run that is computed is waited for longer", async () => {
+  await follow(() => stageShows(1, 1, { live: true }));
+  await push(0, 16);
+  requests = [];
+  await wait(60);
+  assert.deepEqual(requests, []);
+  await wait(60);
+  assert.deepEqual(requests, ["1"]);
+});

@@ -4,8 +4,8 @@
 // are the same.
 import { SAME_MOMENT_S } from "../format.js";
 
-/** @import { ClockResult, Clock, LaneConfig, LaneResult, Run, Scene, SceneLane, Timeline } from "../types.js" */
-/** @import { TimelineLane } from "../types.js" */
+/** @import { ClockResult, Clock, LaneConfig, LaneResult, Playback, Run, Scene, SceneLane } from "../types.js" */
+/** @import { Timeline, TimelineLane } from "../types.js" */
 
 /** What a sentence needs to know of an agent. @typedef {{ name: string, title: string, color: string }} Agent */
 
@@ -59,6 +59,33 @@ export const isTimedOutIn = (scene) => Boolean(scene && scene.time_out_s !== nul
  */
 export const isShownToEnd = (scene, run_id) =>
   scene !== null && scene.run_id === run_id && (scene.kind === "race" ? isTimedOutIn(scene) : scene.ended);
+
+// ---- the figures of a frame, as they are played
+
+/** A live race that has so little left to show waits for a robot that decides [s]. */
+const NOTHING_LEFT_S = 0.1;
+
+/**
+ * How a run is shown: the moment, and how far it can be shown.
+ * @typedef {Pick<Scene, "time_s" | "computed_s" | "duration_s" | "time_out_s"> &
+ *   { rate: number, isOwn: boolean }} Shown
+ */
+
+/** The figures of a frame, with what holds of how it is played. */
+/** @type {(figures: Scene, how: Playback, shown: Shown) => Scene} */
+export const sceneOf = (figures, how, shown) => ({
+  ...figures, time_s: shown.time_s, computed_s: shown.computed_s, duration_s: shown.duration_s,
+  time_out_s: shown.time_out_s, phase: phaseOf(figures, how, shown), playing: how.playing, ended: how.ended,
+  shown_speed: shown.rate, clock: how.clock, replay: shown.isOwn || how.origin === "automatic",
+});
+
+/** @type {(figures: Scene, how: Playback, shown: Shown) => string} */
+function phaseOf({ kind, phase }, { playing }, { time_s, rate, isOwn, computed_s, duration_s, time_out_s }) {
+  if (kind !== "race" || phase === "finished") return phase;
+  if (rate === 0 && time_out_s !== null && Math.abs(time_s - time_out_s) <= SAME_MOMENT_S) return "photo-finish";
+  const isLive = !isOwn && duration_s === null && playing;
+  return isLive && computed_s - time_s < NOTHING_LEFT_S ? "waiting" : phase;
+}
 
 // ---- the timeline
 
