@@ -230,8 +230,8 @@ export const conditionsShown = computed(() => {
 /** The race whose replay is held: paused, or at its end. */
 export const heldRace = computed(() => {
   const race = raceInView.value;
-  const isHeld = playback.value !== null && (!playback.value.playing || playback.value.ended);
-  return race?.state === "finished" && raceScene.value && isHeld && !work.value ? race : null;
+  const isHeld = raceScene.value !== null && (!raceScene.value.playing || raceScene.value.ended);
+  return race?.state === "finished" && isHeld && !work.value ? race : null;
 });
 
 /** The picture may be so many steps behind before that is told. */

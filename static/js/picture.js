@@ -24,7 +24,8 @@ const SAME_TIME_S = 2e-4;
  * of a run that is computed perhaps before it had them all; else the stage has pushed them.
  * @typedef {{ level: number, first: number, frames: Frame[], isSegment: boolean }} Piece
  */
-/** A frame that is here. @typedef {{ piece: Piece, index: number }} Place */
+/** A frame that is here; `isExact`: it is that of the very moment. */
+/** @typedef {{ piece: Piece, index: number, isExact: boolean }} Place */
 /** The frame that is nearest to a time [s]. @typedef {{ time_s: number, frame: Frame }} Exact */
 
 /** The level with about FRAMES_PER_S frames in a second of the picture. @param {number} rate its speed */
@@ -93,7 +94,7 @@ class Edition {
       .filter(({ piece, index }) => index >= 0 && index < (piece.isSegment ? SEGMENT_FRAMES : piece.frames.length))
       .sort((a, b) => Math.abs(a.piece.level - fit) - Math.abs(b.piece.level - fit));
     const best = candidates.find(({ piece, index }) => index < piece.frames.length) ?? candidates[0];
-    return best ? { piece: best.piece, index: Math.min(best.index, best.piece.frames.length - 1) } : null;
+    return best ? { ...best, index: Math.min(best.index, best.piece.frames.length - 1), isExact: false } : null;
   }
 
   /**
@@ -191,11 +192,11 @@ const [LONGEST_STEP_S, LONGEST_STOP_S] = [1, 0.1];
 
 /** A moment as the only frame of a piece. @type {(exact: Exact) => Place} */
 const alone = ({ frame }) =>
-  ({ piece: { level: LOWEST_LEVEL, first: 0, frames: [frame], isSegment: false }, index: 0 });
+  ({ piece: { level: LOWEST_LEVEL, first: 0, frames: [frame], isSegment: false }, index: 0, isExact: true });
 
 const NOTHING = {
   piece: /** @type {Piece | null} */ (null), index: -1, time_s: NaN, frame: /** @type {Frame | null} */ (null),
-  figures: /** @type {object | null} */ (null), view: "",
+  figures: /** @type {object | null} */ (null), view: "", isExact: false,
 };
 
 export class Picture {
@@ -353,19 +354,19 @@ export class Picture {
    * @private
    * @type {(state: SceneState, place: Place, view: string, elapsed_s: number) => void}
    */
-  drawFrame(state, { piece, index }, view, elapsed_s) {
+  drawFrame(state, { piece, index, isExact }, view, elapsed_s) {
     const { frames } = piece;
     const frame = frames[index];
     if (frame === this.shown.frame && this.shown.piece !== null) return;
     const figures = frames.slice(0, index + 1).findLast(({ scene }) => scene)?.scene ?? null;
     // A hidden 3D view draws nothing, and would keep all that it is told.
     if (document.hidden) {
-      this.shown = { ...NOTHING, time_s: frame.time_s, frame, figures };
+      this.shown = { ...NOTHING, time_s: frame.time_s, frame, figures, isExact };
       return;
     }
     const before = this.shown.piece?.frames === frames ? this.shown.index : -1;
     draw([...state.showFrame(frames, index, before), follower.centring(state, frame, view, elapsed_s)]);
-    this.shown = { piece, index, time_s: frame.time_s, frame, figures, view };
+    this.shown = { piece, index, time_s: frame.time_s, frame, figures, view, isExact };
   }
 
   /** Centre what is drawn for another view. @param {string} view */

@@ -22,8 +22,7 @@ const FIRST_SPEED = 2;
 /** How often the page is told the figures, and the position of the stage. */
 const [SCENES_PER_S, POSITIONS_PER_S] = [5, 10];
 /** At its end, a run that is still computed is asked for more after so long. */
-const GROWTH_MS = 1000;
-const [RETRY_MS, HELD_MS] = [1500, 250];
+const [GROWTH_MS, RETRY_MS, HELD_MS] = [1000, 1500, 250];
 /** A replay of this page's own skips nothing after a stall. */
 const LONGEST_TICK_S = 0.25;
 /** The figures of a page that is not seen follow so often. */
@@ -321,9 +320,10 @@ let toldAt = -Infinity;
 /** Let the page know the moment: at once where it is held or something has changed. */
 /** @type {(wanted: Wanted, now: number) => void} */
 function tell({ rate, end_s }, now) {
-  const { figures, time_s } = picture?.figuresOf(end_s) ?? { figures: null, time_s: 0 };
+  const { figures = null, time_s = 0 } = picture?.figuresOf(end_s) ?? {};
   const [known, how] = [bounds.peek(), playback.peek()];
-  if (!figures || !how) return;
+  // What is said of a moment that is held is said of it alone, and not of the frame before.
+  if (!figures || !how || (rate === 0 && end_s > 0 && !picture?.shown.isExact)) return;
   const state = [how, known.duration_s, known.time_out_s, rate, figures, time_s, known.computed_s];
   const isSame = (/** @type {unknown} */ value, /** @type {number} */ n) => value === told[n];
   const isDue = now - toldAt >= 1000 / SCENES_PER_S || !state.slice(0, rate > 0 ? 3 : 4).every(isSame);

@@ -254,9 +254,11 @@ test("a fall is told once it is shown, and the heading at the end", () => {
 
 test("a race can be raced on while its replay is held", () => {
   const lanes = [makeSceneLane({ step: 50, done: true }), makeSceneLane({ lane: 1, step: 12 })];
-  showScene({ phase: "race", time_s: 1, lanes });
+  showScene({ phase: "race", time_s: 1, lanes, playing: true });
   assert.deepEqual([heldRace.value, stepShown.value], [null, 12]);
   applyEvent("stage", { ...STAGE, run_id: RACE.id, phase: "showing", playing: false });
+  assert.deepEqual([heldRace.value], [null], "its figures are not those of the moment yet");
+  showScene({ phase: "race", time_s: 1, lanes, playing: false });
   assert.equal(heldRace.value?.id, RACE.id);
   showScene({ ...AT_END, lanes: lanes.map((lane) => ({ ...lane, done: true })) });
   assert.deepEqual([heldRace.value?.id, stepShown.value], [RACE.id, null]);

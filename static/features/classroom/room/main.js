@@ -1,13 +1,12 @@
 // Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
-import { effect } from "@preact/signals";
+import { effect, untracked } from "@preact/signals";
 import { render } from "preact";
 import { html } from "../../../js/components/elements.js";
 import { Loaded, withStyle } from "../../../js/features.js";
 import { followTheme } from "../../../js/page.js";
+import { connection } from "../../../js/store.js";
 import { Phone } from "./phone.js";
-import { followOwnRun } from "./picture.js";
-import { followPlayer } from "../../../js/player.js";
-import { followRoom, isProjector, isTeacher, refusal, room } from "./room.js";
+import { followRoom, isProjector, isTeacher, refusal, replayed, room } from "./room.js";
 import { Closed, Waiting } from "./join.js";
 
 function Page() {
@@ -27,8 +26,13 @@ effect(() => {
   const { title, code } = room.value ?? { title: "Room", code: "" };
   document.title = [code, title, "Racing Hexapods"].filter(Boolean).join(" · ");
 });
-followPlayer({ ofStage: isProjector });
-if (!isProjector) followOwnRun();
+let hasPicture = false;
+// Who has nothing to see loads nothing that plays; if that fails, again once the connection is back.
+effect(() => {
+  if (hasPicture || connection.value !== "live" || (!isProjector && replayed.value === null)) return;
+  hasPicture = true;
+  import("./picture.js").then(({ followPicture }) => untracked(followPicture), () => (hasPicture = false));
+});
 followRoom();
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));

@@ -4,8 +4,8 @@ import { replayProblem } from "../../../js/player.js";
 import { participantRunNarrative } from "./run-sentences.js";
 import { isAway } from "../../../js/store.js";
 import { givenInWords } from "./allowed-settings.js";
-import { arrived, Picture, replayed, ReplayBar } from "./picture.js";
-import { ownEntry, ownRun, room } from "./room.js";
+import { arrived, Picture, ReplayBar } from "./picture.js";
+import { ownEntry, ownRun, replayed, room } from "./room.js";
 
 export const OwnRobot = () => html`
   <section class="own-robot" aria-label="Your robot">

@@ -8,10 +8,10 @@ import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";
 import { Away, Door } from "./join.js";
 import { May } from "./allowed-settings.js";
-import { CLOSER, closerLink, replayed } from "./picture.js";
 import { Answer, KINDS, scoreInWords } from "./questions.js";
 import {
-  goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, room, shownResults,
+  CLOSER, closerLink, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, replayed, room,
+  shownResults,
 } from "./room.js";
 
 /** @import { Ask, Classroom, LessonCard } from "../../../js/types.js" */

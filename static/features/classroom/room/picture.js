@@ -1,5 +1,5 @@
 // The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
-import { computed, effect, signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../../../js/components/elements.js";
 import { page } from "../../../js/page-state.js";
@@ -7,10 +7,10 @@ import { shownTheme } from "../../../js/page.js";
 import { isShownToEnd } from "../../../js/narrative/moment.js";
 import { isAway, scene } from "../../../js/store.js";
 import {
-  closeReplay, drawIn, endTime, isBuffering, openReplay, playback, playReplay, plan, position, replayProblem,
-  setReplaySpeed,
+  closeReplay, drawIn, endTime, followPlayer, isBuffering, openReplay, playback, playReplay, plan, position,
+  replayProblem, setReplaySpeed,
 } from "../../../js/player.js";
-import { lastRunId, ownRun, ownRunId, room } from "./room.js";
+import { isProjector, replayed, room, toReplay } from "./room.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "../../../js/replay-frames.js" */
@@ -18,22 +18,17 @@ import { lastRunId, ownRun, ownRunId, room } from "./room.js";
 /** A practice is long, and its steps are much alike. */
 const SPEEDS = { training: 8, race: 2 };
 
-/** The run that the page replays: the own one of this card, else the one that the card names. */
-const wanted = computed(() => {
-  const run = ownRun.value;
-  if (run && (run.state === "finished" || run.progress.done > 0)) return { id: run.id, kind: run.kind };
-  const named = ownRunId.value === null ? room.value?.shown.state?.run : null;
-  return named ? { id: named, kind: "race" } : null;
-});
-
-/** Id of the run that the page replays; null for none. */
-export const replayed = computed(() => wanted.value?.id ?? null);
-
 /** Ids of the runs whose pictures have been where their distances can be told. @type {Signal<Set<string>>} */
 export const arrived = signal(new Set());
 
-/** Replay the own run as soon as it has a step, and that of the next card after it. */
-export function followOwnRun() {
+/** Show the stage on a projector, on phones the own run as soon as it has a step. */
+export function followPicture() {
+  followPlayer({ ofStage: isProjector });
+  if (!isProjector) followOwnRun();
+}
+
+/** Replay the own run, and that of the next card after it. */
+function followOwnRun() {
   effect(() => {
     const id = replayed.value;
     if (id !== null && isShownToEnd(scene.value, id) && !arrived.peek().has(id)) {
@@ -47,17 +42,10 @@ export function followOwnRun() {
       closeReplay();
       return;
     }
-    setReplaySpeed(/** @type {Record<string, number>} */ (SPEEDS)[wanted.peek()?.kind ?? "race"] ?? 2);
+    setReplaySpeed(/** @type {Record<string, number>} */ (SPEEDS)[toReplay.peek()?.kind ?? "race"] ?? 2);
     openReplay(id);
   });
 }
-
-/** Steps of a tab of the dashboard in which the own run is looked at closer. @type {Record<string, string>} */
-export const CLOSER = { why: "Why each move", gait: "Its gait", table: "Its table of values" };
-
-/** A link to the dashboard with the own run, in the room's stage. @param {string} tab */
-export const closerLink = (tab) =>
-  `${room.value?.code}/?run=${ownRunId.value ?? lastRunId.value}&depth=study&tab=${tab}&hidden=card`;
 
 /** What this page plays, in 3D. @param {{ isProjected?: boolean }} props */
 export function Picture({ isProjected = false }) {

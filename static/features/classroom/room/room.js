@@ -57,6 +57,24 @@ export const ownWhatIf = computed(() => ownEntry.value?.run?.answer ?? null);
 /** @type {import("@preact/signals").ReadonlySignal<Run | null>} */
 export const ownRun = computed(() => runs.value.get(ownRunId.value ?? "") ?? null);
 
+/** The run that the page replays: the own one of this card, else the one that the card names. */
+export const toReplay = computed(() => {
+  const run = ownRun.value;
+  if (run && (run.state === "finished" || run.progress.done > 0)) return { id: run.id, kind: run.kind };
+  const named = ownRunId.value === null ? room.value?.shown.state?.run : null;
+  return named ? { id: named, kind: "race" } : null;
+});
+
+/** Id of the run that the page replays; null for none. */
+export const replayed = computed(() => toReplay.value?.id ?? null);
+
+/** Steps of a tab of the dashboard in which the own run is looked at closer. @type {Record<string, string>} */
+export const CLOSER = { why: "Why each move", gait: "Its gait", table: "Its table of values" };
+
+/** A link to the dashboard with the own run, in the room's stage. @param {string} tab */
+export const closerLink = (tab) =>
+  `${room.value?.code}/?run=${ownRunId.value ?? lastRunId.value}&depth=study&tab=${tab}&hidden=card`;
+
 const ENDED = ["finished", "failed", "stopped", "interrupted"];
 
 /** Whether a run goes on, or waits. @param {{ state: string } | null} run */
