@@ -27,13 +27,14 @@ def modules_of(entry: str) -> dict[str, str]:
     }
 
 
-def test_the_player_and_its_import_are_those_of_the_page() -> None:
+def test_the_player_and_its_imports_are_those_of_the_page() -> None:
     modules = modules_of(PLAYER)
 
-    assert list(modules) == [PLAYER, "js/replay-frames.js"]
+    assert set(modules) == {PLAYER, "js/replay-frames.js", "js/format.js"}
     for name, text in modules.items():
         source = (assets.static_dir() / name).read_text("utf-8")
-        assert text == source.replace('"../replay-frames.js";', '"js/replay-frames.js";')
+        source = source.replace('"../replay-frames.js";', '"js/replay-frames.js";')
+        assert text == source.replace('"./format.js";', '"js/format.js";')
 
 
 @pytest.mark.parametrize("entry", [PLAYER, REPORT])

@@ -149,7 +149,7 @@ def test_killed_server_leaves_no_process(serve: Callable[..., Served]) -> None:
     ("request_line", "status"),
     [
         ("GET / HTTP/1.1", 200),
-        ("GET /viewer/?view=leader HTTP/1.1", 200),
+        ("GET /viewer/?theme=dark HTTP/1.1", 200),
         ("GET /viewer HTTP/1.1", 307),
         ("POST /viewer/ HTTP/1.1", 401),
         ("GET /api/v1/events/snapshot HTTP/1.1", 200),
