@@ -369,7 +369,7 @@ class Stage:
         is_off = off > _DRIFT_S * max(before.rate_at(now), 1.0)
         is_used_up = not is_held and before.rate > 0 and before.ends_s - now < _NEARLY_USED_UP_S
         # Of a picture that is held, only the time bar shows what is computed.
-        has_grown = before.computed_s != show.computed_s
+        has_grown = before.computed_s != _milliseconds(show.computed_s)
         has_grown &= not is_held or now - before.at_s >= _GROWTH_TOLD_S
         if not (is_off or is_used_up or has_grown):
             return False
@@ -392,9 +392,9 @@ class Stage:
             at_s=round(now, 4),
             points=[(round(after_s, 4), round(time_s, 4)) for after_s, time_s in points],
             rate=round(rate, 4),
-            computed_s=show.computed_s,
-            duration_s=show.duration_s,
-            time_out_s=show.time_out_s,
+            computed_s=_milliseconds(show.computed_s),
+            duration_s=None if show.duration_s is None else _milliseconds(show.duration_s),
+            time_out_s=None if show.time_out_s is None else _milliseconds(show.time_out_s),
         )
 
     def _run_label(self) -> RunLabel:
@@ -585,6 +585,11 @@ class Stage:
     def _publish(self) -> None:
         self._playhead = self._planned(self.now())
         self._channel.publish("stage", self.state())
+
+
+def _milliseconds(time_s: float) -> float:
+    """Round a time [s] as pages have it in the figures of a moment."""
+    return round(time_s, 3)
 
 
 def _staged(run: Run) -> StagedRun:

@@ -16,6 +16,9 @@ const base = () => new URL(`${root()}api/v1/`, document.baseURI);
 
 /** Where something is that the browser loads by itself. @param {string} path of the API */
 export const addressOf = (path) => new URL(path, base()).href;
+/** Where something of a room's stage is. @param {string} code @param {string} path of the API */
+export const roomAddressOf = (code, path) =>
+  new URL(`${root()}r/${encodeURIComponent(code)}/api/v1/${path}`, document.baseURI).href;
 
 /** A run, or enough of one to address it. @typedef {{ kind: Kind | null, id: string }} RunKey */
 /** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */

@@ -65,6 +65,8 @@ class Stream {
     this.onEvent = onEvent;
     this.onState = onState;
     this.address = "";
+    /** Address of the snapshot with which the stream would begin. */
+    this.snapshot = "";
     /** @type {EventSource | null} */
     this.source = null;
     this.wait_ms = FIRST_WAIT_MS;
@@ -130,7 +132,7 @@ class Stream {
     this.isPolling = true;
     this.polls += 1;
     const number = this.polls;
-    const data = await snapshotOf(this.address);
+    const data = await read(this.snapshot);
     if (number !== this.polls) return;
     this.timers.polling = setTimeout(() => this.poll(), POLL_MS);
     if (data !== null) this.onEvent("snapshot", data, this.isLive);
@@ -150,14 +152,15 @@ class Stream {
  * @param {string[]} names of events that are wanted
  * @param {OnEvent} onEvent
  * @param {(state: Connection) => void} onState
- * @param {() => string} addressOf the stream; reads signals, and where they change another stream takes its place
+ * @param {() => { stream: string, snapshot: string }} addresses of the stream, and of the snapshot with which it would
+ *   begin; reads signals, and where they change another stream takes its place
  * @returns {() => void} closes it for good
  */
-export function openEvents(names, onEvent, onState, addressOf) {
+export function openEvents(names, onEvent, onState, addresses) {
   const stream = new Stream(names, onEvent, onState);
   onState("connecting");
   const stop = effect(() => {
-    stream.address = addressOf();
+    ({ stream: stream.address, snapshot: stream.snapshot } = addresses());
     untracked(() => stream.open());
   });
   let isOver = false;
@@ -176,10 +179,8 @@ export function openEvents(names, onEvent, onState, addressOf) {
   };
 }
 
-/** The snapshot with which a stream would begin; null if it cannot be had. @param {string} stream */
-async function snapshotOf(stream) {
-  const address = new URL(stream);
-  address.pathname += "/snapshot";
+/** A snapshot; null if it cannot be had. @param {string} address */
+async function read(address) {
   try {
     const answer = await fetch(address, { signal: AbortSignal.timeout(FIRST_SILENCE_MS) });
     return answer.ok ? await answer.json() : null;

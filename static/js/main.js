@@ -74,7 +74,7 @@ openEvents(eventNames(), applyEvent, (state) => {
   if (state === "live") isLockedOut.value = false;
   // The stream does not say why it ended: the server may have come back with a token.
   if (state === "reconnecting") getStage().catch((error) => (isLockedOut.value = isLockOut(error)));
-}, () => addressOf(`events?picture=${!isOwn.value}`));
+}, () => ({ stream: addressOf(`events?picture=${!isOwn.value}`), snapshot: addressOf("events/snapshot") }));
 followOptions(openForms);
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));

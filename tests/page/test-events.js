@@ -80,7 +80,8 @@ beforeEach(() => {
   address.value = "http://page.test/api/v1/events?picture=true";
   const onEvent = (/** @type {string} */ name, /** @type {any} */ _, /** @type {boolean} */ isContinued) =>
     told.push(name + (name === "snapshot" && isContinued ? "+" : ""));
-  close = openEvents(["snapshot", "stage", "clock"], onEvent, (state) => told.push(state), () => address.value);
+  close = openEvents(["snapshot", "stage", "clock"], onEvent, (state) => told.push(state),
+    () => ({ stream: address.value, snapshot: "http://page.test/api/v1/events/snapshot" }));
 });
 afterEach(() => {
   close();
@@ -112,7 +113,7 @@ test("a stream that is cut is made up for at once, and said to be away only if t
   newest().onerror();
   await pass(0);
   assert.deepEqual(told.slice(3), ["snapshot+", "live"]);
-  assert.deepEqual(polls, ["http://page.test/api/v1/events/snapshot?picture=true"]);
+  assert.deepEqual(polls, ["http://page.test/api/v1/events/snapshot"]);
   polled = null;
   await pass(2000);
   assert.equal(told.at(-1), "reconnecting");

@@ -246,8 +246,12 @@ class Audience:
         events = self._stage_events.drain()
         self._newest = json.loads(events[-1].data) if events else self._newest
         for name, value in to_json(stage).items():
-            is_published = name not in ("time_s", "announced")
+            is_published = name not in ("time_s", "announced", "sent_s", "playhead")
             assert not is_published or value == self._newest[name], "what pages were told last"
+        # The feed of the picture tells of a new playhead, with the next piece or by an event.
+        playhead = self._parts.stage.picture().playhead
+        rate = max(1.0, playhead.rate_at(self._parts.now))
+        assert playhead.time_at(self._parts.now) == pytest.approx(frame.time_s, abs=0.15 * rate)
         assert stage.run_id == frame.run_id == expected.on_stage
         assert stage.live == (expected.state in NOT_ENDED)
         assert (stage.origin == "chosen") == expected.is_chosen

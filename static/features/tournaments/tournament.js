@@ -1,6 +1,6 @@
 // The tournament of this page as signals: what the server tells who asks, kept by its events, and what can be done.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { addressOf, getOptions } from "../../js/api.js";
+import { addressOf, getOptions, roomAddressOf } from "../../js/api.js";
 import { goTo, ownAddress } from "../../js/page-state.js";
 import { makeRequests } from "../../js/requests.js";
 import { debounce } from "../../js/debounce.js";
@@ -133,7 +133,10 @@ export async function follow() {
       connection.value = "live";
       return undefined;
     }
-    return openEvents(["snapshot", "tournament", "room"], onEvent, onState, () => stream.peek());
+    const { room, is_operator } = tournament.peek() ?? {};
+    const snapshot = room && !is_operator ? roomAddressOf(room, "events/snapshot") : addressOf("events/snapshot");
+    return openEvents(["snapshot", "tournament", "room"], onEvent, onState,
+      () => ({ stream: stream.peek(), snapshot }));
   });
 }
 

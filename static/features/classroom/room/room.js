@@ -1,6 +1,6 @@
 // The room of this page as signals: what the server tells who asks, kept by its events, and what can be done in it.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { getAnyRun, getOptions, randomKey } from "../../../js/api.js";
+import { getAnyRun, getOptions, randomKey, roomAddressOf } from "../../../js/api.js";
 import * as api from "../api.js";
 import { storedText } from "../../../js/page.js";
 import { ownAddress } from "../../../js/page-state.js";
@@ -165,7 +165,10 @@ export async function followRoom() {
       // The stream does not say why it ended: the room may have, or the seat is gone.
       if (now === "reconnecting") untracked(refresh);
       // Phones show no stage.
-    }, () => `${api.eventsOf(code)}?picture=${isProjector}`);
+    }, () => ({
+      stream: `${api.eventsOf(code)}?picture=${isProjector}`,
+      snapshot: roomAddressOf(room.peek()?.code ?? code, "events/snapshot"),
+    }));
   });
   effect(() => {
     // Each card has results of its own.
