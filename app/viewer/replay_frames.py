@@ -91,8 +91,12 @@ class ReplayFrames:
             NotFound, InvalidInput, Conflict: see `Replays.get`.
         """
         replay = self._replays.get(run_id, clock, ghost_id)
-        with self._encoding():
-            return encode_frames(replay, [time_s], self._stopping.check)
+        key: Hashable = (replay.version, clock, time_s)
+        if not replay.is_complete:
+            key = (key, replay.recording_number, replay.recorded)
+        return self._encoded_once(
+            key, lambda: encode_frames(replay, [time_s], self._stopping.check)
+        )
 
     def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
         """Return a ghost of a lane's robot in a state, as messages without `scene` and `follow`.

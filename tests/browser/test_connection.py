@@ -1,6 +1,11 @@
-"""The server goes away and comes back."""
+"""The server goes away and comes back; a proxy holds streams back."""
 
+import http.client
 import re
+import threading
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
@@ -76,3 +81,65 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
         assert loaded.value.ok
         expect(world.get_by_role("radio", name="Payload")).to_be_visible()
     dashboard.complaints.clear()
+
+
+@contextmanager
+def proxy_that_holds_streams_back(port: int) -> Iterator[str]:
+    """Run a proxy before a server that passes an answer on once it has all of it."""
+
+    class Handler(BaseHTTPRequestHandler):
+        protocol_version = "HTTP/1.1"
+
+        def _pass_on(self) -> None:
+            body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
+            with closing(http.client.HTTPConnection("127.0.0.1", port)) as upstream:
+                upstream.request(self.command, self.path, body, dict(self.headers))
+                answer = upstream.getresponse()
+                content = answer.read()
+            self.send_response(answer.status)
+            for name, value in answer.getheaders():
+                if name.lower() not in ("transfer-encoding", "content-length", "connection"):
+                    self.send_header(name, value)
+            self.send_header("Content-Length", str(len(content)))
+            self.end_headers()
+            self.wfile.write(content)
+
+        do_GET = do_PUT = do_POST = _pass_on  # noqa: N815 - named by the base class
+
+        def log_message(self, *_: object) -> None:
+            """Say nothing."""
+
+    class Proxy(ThreadingHTTPServer):
+        daemon_threads = True
+
+        def handle_error(self, *_: object) -> None:
+            """Say nothing: pages give streams up that bring nothing."""
+
+    proxy = Proxy(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=proxy.serve_forever, daemon=True)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{proxy.server_port}/"
+    finally:
+        proxy.shutdown()
+        proxy.server_close()
+        thread.join()
+
+
+@pytest.mark.looks_at_3d
+def test_where_streams_are_held_back_the_stage_is_followed_all_the_same(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    page = dashboard.page
+    with server.api() as api, proxy_that_holds_streams_back(server.port) as address:
+        dashboard.open(address)
+        lanes = [{"agent": "greedy"}, {"agent": "greedy"}]
+        body = {"gait": "left-right-origin", "simulator": "kinematic", "lanes": lanes, "steps": 30}
+        api.post("races", json=body).raise_for_status()
+        shown = page.get_by_role("group", name="Shown run", exact=True)
+        expect(shown).to_contain_text(re.compile(r"^Race: Greedy.*step \d+ of 30$"))
+        expect(dashboard.connection).to_contain_text("live")
+        expect(page.get_by_text("Reconnecting")).to_have_count(0)
+        # A command reaches the page within a few seconds.
+        api.put("stage", json={"time_s": 1.0, "playing": False}).raise_for_status()
+        expect(dashboard.moment).to_have_value("1")

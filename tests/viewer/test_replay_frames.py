@@ -120,6 +120,21 @@ def test_segments_are_encoded_once_until_the_run_changes(parts: StageParts) -> N
     assert frames.segment(run.id, "paper", 0, 0).data is not first
 
 
+def test_a_moment_that_is_asked_for_twice_is_encoded_once(parts: StageParts) -> None:
+    run, frames = parts.finished_race(LANES), frames_of(parts)
+    first = frames.moment(run.id, "paper", 1.0)
+    assert frames.moment(run.id, "paper", 1.0) is first
+    assert frames.moment(run.id, "free", 1.0) is not first
+
+    race, advance = parts.running_race(LANES)
+    for _ in range(4):
+        advance()
+    newest = decoded(frames.moment(race.id, "paper", 100.0))[0]["frames"][0]["time_s"]
+    for _ in range(4):
+        advance()
+    assert decoded(frames.moment(race.id, "paper", 100.0))[0]["frames"][0]["time_s"] > newest
+
+
 def test_a_scene_is_encoded_once_until_the_run_changes(parts: StageParts) -> None:
     run, frames = parts.finished_race(LANES), frames_of(parts)
     first = frames.scene(run.id)
