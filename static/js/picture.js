@@ -1,7 +1,8 @@
 // The picture of a run: keeps the frames that have come, requests those that lack, and sends the 3D view what it needs
 // to be at a moment.
 import { signal } from "@preact/signals";
-import { Follower, SceneState } from "./replay-frames.js";
+import { getReplayFrames, getStartLine } from "./api.js";
+import { decode, Follower, SceneState } from "./replay-frames.js";
 
 /** @import { Frame, Frames, Message } from "./replay-frames.js" */
 /** @import { Clock } from "./types.js" */
@@ -43,6 +44,12 @@ function numberOf(level, time_s, end_s) {
 }
 
 /** @typedef {(address: string, query?: Record<string, string>) => Promise<Frames>} Request of frames of a run */
+/** Requests frames of a run; without one the start line, which is a scene alone. */
+/** @type {(id: string | null, ghost: string | null) => Request} */
+export const requestOf = (id, ghost) => async (address, query = {}) => {
+  if (id === null) return decode(await getStartLine());
+  return decode(await getReplayFrames(id, address, { ...query, ...(ghost === null ? {} : { ghost }) }));
+};
 /** Takes an error, and lets the request be made again. @typedef {(error: unknown, again: () => void) => void} Refuse */
 
 /** The frames of a version of a run under a clock, and the scene on which they are based. */

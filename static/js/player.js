@@ -2,19 +2,19 @@
 // a position of its own. Both are loaded, drawn (`picture.js`) and told in the same way. Which run is replayed, and
 // where it is held, is of the page's state.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { getReplay, getReplayFrames, getStartLine, isLasting } from "./api.js";
+import { getReplay, isLasting } from "./api.js";
 import { SAME_MOMENT_S } from "./format.js";
 import { sceneOf } from "./narrative/moment.js";
 import { change, page } from "./page-state.js";
-import { drawWith, Picture } from "./picture.js";
+import { drawWith, Picture, requestOf } from "./picture.js";
 import {
-  approached, decode, endOf, inRecording, momentOf, nextStep, stepsUntil, timeOutOf, unpack,
+  approached, endOf, inRecording, momentOf, nextStep, stepsUntil, timeOutOf, unpack,
 } from "./replay-frames.js";
 import { connection, isAway, isGone, newestPiece, playhead, scene, serverClock, stage } from "./store.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Request, Wanted } from "./picture.js" */
+/** @import { Wanted } from "./picture.js" */
 /** @import { Message } from "./replay-frames.js" */
 /** @import { Clock, Playback, ReplayPlan, Scene } from "./types.js" */
 
@@ -75,10 +75,14 @@ export const isCutAtTimeOut = computed(() =>
 
 /** Whether this page shows the stage while it has no replay of its own. */
 const followsStage = signal(false);
+/** Whether there is a 3D view. */
+const hasView = signal(false);
 /** What is to be played, as a text: the own replay's run and ghost, or the run on stage; "" for nothing. */
 const source = computed(() => {
   if (isOwn.value) return JSON.stringify({ id: page.run.value, ghost: page.ghost.value });
-  return followsStage.value && stage.value ? JSON.stringify({ onStage: stage.value.run_id }) : "";
+  // The start line has nothing but a picture.
+  const isSeen = stage.value !== null && (stage.value.run_id !== null || hasView.value);
+  return followsStage.value && isSeen ? JSON.stringify({ onStage: stage.value?.run_id }) : "";
 });
 /** The source that is loaded, or being loaded. */
 let opened = "";
@@ -136,13 +140,6 @@ async function open(id, ghost, isPushed, time_s) {
   }
 }
 
-/** Requests frames of a run; without one the start line, which is a scene alone. */
-/** @type {(id: string | null, ghost: string | null) => Request} */
-const requestOf = (id, ghost) => async (address, query = {}) => {
-  if (id === null) return decode(await getStartLine());
-  return decode(await getReplayFrames(id, address, { ...query, ...(ghost === null ? {} : { ghost }) }));
-};
-
 /**
  * Tell an error that will be the same the next time, else try again after a while: of the stage always, which may show
  * another run by then.
@@ -178,6 +175,7 @@ function forget() {
 /** Take the 3D view in which to draw; what it had is gone. @param {(messages: Message[]) => void} take */
 export function drawIn(take) {
   drawWith(take);
+  hasView.value = true;
   picture?.begin(page.camera.peek());
 }
 

@@ -27,8 +27,8 @@ def test_bench_prints_every_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         "lookahead_speedup",
         "two_step_decision_over_motion",
         "planning_overhead",
-        "stage_update_ms",
-        "stage_update_bytes",
+        "picture_encoding_share",
+        "picture_bytes_per_second",
     }
     assert all(isinstance(value, int | float) for value in figures.values())
     assert figures["training_over_physics"] > 0
