@@ -34,7 +34,7 @@ import psutil
 _LOOPBACK = ("127.0.0.1", "localhost")
 _OPENING_AT_ONCE = 50
 _SMALL_BUFFER_BYTES = 4096
-_API_PAUSE_S = 0.05
+_API_PAUSE_S = 0.25
 _FETCHED_AHEAD_S = 1.0
 _HEAD = b"GET %s HTTP/1.1\r\nHost: %s\r\nAccept-Encoding: gzip\r\n\r\n"
 
