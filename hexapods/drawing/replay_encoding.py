@@ -87,9 +87,10 @@ def _frames(replay: Replay, times_s: Sequence[float], check: Check) -> Iterator[
     """Yield the scene at the start, then what each frame changes; each with its other fields."""
     with recorded_viser() as server, recorder(server) as recording:
         stage_scene = StageScene(server)
-        for number, time_s in enumerate([0.0, *times_s], start=-1):
+        for number, time_s in enumerate([None, *times_s], start=-1):
             check()
-            frame = replay.frame_at(time_s)
+            # Pages keep the scene while the run records on, so that it must not depend on that.
+            frame = replay.start_frame() if time_s is None else replay.frame_at(time_s)
             stage_scene.draw(frame)
             has_figures = number < 0 or number % _FRAMES_PER_SCENE == 0
             yield (

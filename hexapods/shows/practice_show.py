@@ -214,6 +214,22 @@ class PracticeShow(PlayedShow):
             replay=run_label.replay,
         )
 
+    def start(self, run_label: RunLabel) -> StageFrame:
+        """Return the frame before the first step, which what is recorded does not change."""
+        return StageFrame(
+            spec=self.spec,
+            run_id=run_label.run_id,
+            phase="start-line",
+            label=run_label.name,
+            lanes=(self._at_rest(),),
+            duration_s=self.duration_s,
+            replay=run_label.replay,
+        )
+
+    def _at_rest(self) -> LaneFrame:
+        at_start = self._world().as_of(0)
+        return LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
+
     @property
     def _is_halted(self) -> bool:
         """Whether the last step of a run that ended early is shown."""
@@ -297,8 +313,7 @@ class PracticeShow(PlayedShow):
     def _lane(self) -> LaneFrame:
         world = self._world()
         if self._done is None:
-            at_start = world.as_of(0)
-            return LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
+            return self._at_rest()
         index = min(bisect_left(self._step_numbers, self._current_step()), len(self._steps) - 1)
         step, motion = self._steps[index], self._walk.motion(index)
         elapsed_s = (self._done - (step.step - 1)) * float(motion.time_s[-1])

@@ -222,9 +222,7 @@ class RaceShow(PlayedShow):
     def frame(self, run_label: RunLabel) -> StageFrame:
         """Return the frame at the playback position."""
         lanes = tuple(lane.view(self.time_s, self._complete(lane)) for lane in self._lanes)
-        at_start = self._world.as_of(0)
-        at_rest = LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
-        lanes = lanes or (at_rest,) * len(self.spec.lane_specs)
+        lanes = lanes or self._at_rest()
         return StageFrame(
             spec=self.spec,
             run_id=run_label.run_id,
@@ -242,6 +240,24 @@ class RaceShow(PlayedShow):
             clock=self.clock,
             replay=run_label.replay,
         )
+
+    def start(self, run_label: RunLabel) -> StageFrame:
+        """Return the frame before the first step, which what is recorded does not change."""
+        return StageFrame(
+            spec=self.spec,
+            run_id=run_label.run_id,
+            phase="start-line",
+            label=run_label.name,
+            lanes=self._at_rest(),
+            ghost_lanes=(None,) * len(self._original_lanes),
+            clock=self.clock,
+            replay=run_label.replay,
+        )
+
+    def _at_rest(self) -> tuple[LaneFrame, ...]:
+        at_start = self._world.as_of(0)
+        at_rest = LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
+        return (at_rest,) * len(self.spec.lane_specs)
 
     def _label(self, run_label: RunLabel, lanes: tuple[LaneFrame, ...]) -> str:
         """Return the run's name with the progress of the lanes that still walk."""

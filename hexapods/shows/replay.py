@@ -163,6 +163,13 @@ class Replay:
             recorded_times_s.append(end_s)
         return recorded_times_s
 
+    def start_frame(self) -> StageFrame:
+        """Return the frame before the first step: the same whatever is recorded."""
+        with self._lock:
+            frame = self.show.start(self.label)
+        ghosts = self.ghost.start_frame().lanes if self.ghost else frame.ghost_lanes
+        return replace(frame, spec=self._spec, ghost_lanes=ghosts)
+
     def frame_at(self, time_s: float) -> StageFrame:
         """Return the frame at a time [s], or at the nearest that is recorded.
 

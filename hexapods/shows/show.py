@@ -198,6 +198,10 @@ class IdleShow:
     def retime(self, clock: Clock) -> None:
         """Do nothing: the show has no duration."""
 
+    def start(self, run_label: RunLabel) -> StageFrame:
+        """Return the only frame."""
+        return self.frame(run_label)
+
     def frame(self, run_label: RunLabel) -> StageFrame:
         """Return the frame, which is always the same but for `playing`."""
         return StageFrame(

@@ -44,8 +44,8 @@ def drawn(replay: Replay, times_s: list[float]) -> list[list[dict[str, Any]]]:
     """Return the messages by which each frame is drawn, without an encoding."""
     with recorded_viser() as server, recorder(server) as recording:
         scene, frames = StageScene(server), []
-        for time_s in [0.0, *times_s]:
-            scene.draw(replay.frame_at(time_s))
+        for frame in [replay.start_frame(), *map(replay.frame_at, times_s)]:
+            scene.draw(frame)
             messages, arrays = recording.take()
             frames.append([readable(message, arrays) for message in messages])
     return frames[1:]

@@ -81,7 +81,7 @@ def test_a_pushed_segment_is_the_same_bytes_as_a_fetched_one(parts: FedParts) ->
 
 def test_after_a_jump_a_few_frames_come_before_their_segment(parts: FedParts) -> None:
     run = parts.finished_race(steps=30)
-    parts.stage.set(run_id=run.id, speed=1, time_s=4.0)
+    parts.stage.set(run_id=run.id, speed=1, time_s=3.0)
     pieces = parts.pieces(lambda pieces: any(map(is_segment, pieces)))
     # A busy machine may be late for the first ones, and try again.
     *first_pieces, segment = pieces[: 1 + next(n for n, p in enumerate(pieces) if is_segment(p))]

@@ -144,6 +144,21 @@ def test_a_scene_is_encoded_once_until_the_run_changes(parts: StageParts) -> Non
     assert frames.scene(run.id) is not first
 
 
+def test_the_scene_is_the_same_before_and_after_a_run_has_recorded(parts: StageParts) -> None:
+    training, advance_training = parts.running_training(steps=20)
+    race, advance_race = parts.running_race(LANES)
+    runs = (training, race)
+    before = [frames_of(parts).scene(run.id) for run in runs]
+    for _ in range(12):
+        advance_training()
+        advance_race()
+    assert [frames_of(parts).scene(run.id) for run in runs] == before
+
+    # What it lacks, such as the foot grid of a learner, each piece brings.
+    frames = decoded(frames_of(parts).piece(training.id, "paper", 0, 30, 4))[0]["frames"]
+    assert any("/grid/" in message.get("name", "") for message in frames[0]["messages"])
+
+
 def test_a_race_under_way_is_encoded_as_far_as_it_is(parts: StageParts) -> None:
     run, advance = parts.running_race(LANES)
     for _ in range(12):
@@ -190,7 +205,9 @@ def test_frames_with_an_evaluation_send_no_meshes_of_its_ghost(parts: StageParts
     moment, arrays = decoded(frames.moment(run.id, "paper", 5.9))
 
     assert any("ghosts/line" in m.get("name", "") for m in moment["frames"][0]["messages"])
-    assert not any(m["type"].startswith("Batched") for m in moment["frames"][0]["messages"])
+    made = {m["name"] for m in moment["frames"][0]["messages"] if m["type"].startswith("Batched")}
+    assert not made & meshes
+    assert all("/grid/" in name for name in made)
     (scales, *_) = (
         np.frombuffer(value, np.float32)
         for name, value in shown(moment["frames"], arrays).items()
