@@ -307,7 +307,7 @@ function takePosition({ time_s, rate }, isHere, now) {
     if (rate === 0 && isHere && drawn_s > time_s + SAME_MOMENT_S) position.value = drawn_s;
   } else if (rate === 0 || now - positionAt >= 1000 / POSITIONS_PER_S) {
     positionAt = now;
-    position.value = isHere || Number.isNaN(drawn_s) ? time_s : drawn_s;
+    position.value = isHere || rate === 0 || Number.isNaN(drawn_s) ? time_s : drawn_s;
   }
 }
 
