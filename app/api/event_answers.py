@@ -18,7 +18,7 @@ from app.events.event_records import (
     ViewersEvent,
 )
 from app.feature import Feature, stage_members
-from app.stage.stage import StageView, stage_view
+from app.stage.stage_view import StageView, stage_view
 from app.viewer.picture_feed import PieceEvent
 from hexapods.shows.scene_view import SceneView
 

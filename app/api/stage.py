@@ -13,7 +13,7 @@ from app.api.policy import OPERATOR, WATCH_STAGE, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.schemas import StageBody
 from app.feature import Feature, stage_members
-from app.stage.stage import stage_view
+from app.stage.stage_view import stage_view
 
 
 def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:

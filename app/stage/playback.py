@@ -142,10 +142,6 @@ class StoredReplay(Replay):
         show = self.show
         return self._number, show.recording_number if isinstance(show, RaceShow) else 0
 
-    def is_of(self, run: Run, ghost: Run | None) -> bool:
-        """Whether it shows these runs as they are now."""
-        return self.version == version_of(run, ghost)
-
     @property
     def size(self) -> int:
         """Approximate size of its recordings in memory [bytes], as far as they were read."""
@@ -233,7 +229,7 @@ class Replays:
         key = (run_id, clock, ghost_id)
         with self._lock:
             replay = self._kept.get(key)
-            if replay is None or not replay.is_of(run, ghost):
+            if replay is None or replay.version != version_of(run, ghost):
                 replay = self._replay(run, clock, self._replay(ghost, clock) if ghost else None)
                 self._kept[key] = replay
         # A run that is computed may have no recording yet.

@@ -5,16 +5,14 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, timedelta
-from functools import cache
 from types import MappingProxyType
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Any, Literal
 
-from annotated_types import Ge
-
-from app.answer import Answer, extended
 from app.events.bus import Channel, Event, Subscription
+from app.stage import planning
 from app.stage.playback import show_of, version_of
-from app.stage.state_machine import Origin, Phase, StagedRun, StageState
+from app.stage.stage_view import Announcement, Picture, StageView, stage_view
+from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
@@ -35,78 +33,12 @@ ANNOUNCE_AFTER_S, NEXT_AFTER_S = 10.0, 10.0
 """Time after the end of a show until a replay is announced, and from then until it begins [s]."""
 _LONGEST_STALL_S = 2.0
 """Longest time by which playback advances at once: a machine that was suspended goes on there."""
-_PLANNED_S, _PLANNED_LIVE_S = 20.0, 3.0
-"""Real time for which playheads are planned [s], also of runs that are still computed."""
-_NEARLY_USED_UP_S = 1.0
-"""Real time that is left of a playhead when the next one is planned [s]."""
-_GROWTH_TOLD_S = 1.0
-"""Time after which it is told that more is computed, while the picture is held [s]."""
-_DRIFT_S = 0.1
-"""Real time by which the picture may be off its playhead [s]."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
 _RECENT_RUNS = 20
 _logger = logging.getLogger(__name__)
 _NO_MEMBERS: Mapping[str, Record] = MappingProxyType({})
 _SAME_END = timedelta(seconds=15)
 """Time within which all runs end that the end of a server interrupts."""
-
-
-class Announcement(Answer):
-    """A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run."""
-
-    run_id: str
-    in_s: Annotated[float, Ge(0)]
-
-
-class StageView(Answer):
-    """State of the stage, which shows one run to all viewers.
-
-    Attributes:
-        phase: `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is
-            at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
-        sent_s: time of the server's clock when this was written [s]; only differences count.
-        version: of the frames of the run on stage, as of its replay; null for an empty stage.
-        playhead: the moment that is shown, now and later.
-        origin: why the run is on stage: it was `started`, a person has `chosen` it, the server
-            replays it (`automatic`), or it was shown last before the server's start (`restored`).
-    """
-
-    run_id: str | None
-    kind: Literal["idle", "training", "race"]
-    phase: Phase
-    origin: Origin
-    time_s: float
-    playing: bool
-    speed: float | Literal["time-lapse"]
-    clock: Clock
-    end_at_time_out: bool
-    replay: bool
-    live: bool
-    ended: bool
-    next_run_id: str | None
-    holder: str | None
-    announced: Announcement | None
-    sent_s: float
-    version: str | None
-    playhead: Playhead
-
-
-class Picture(NamedTuple):
-    """What a stage shows: a run as timed by a clock, or none, and at which time of it."""
-
-    run_id: str | None
-    version: str | None
-    """Version of the run's frames."""
-    clock: Clock
-    playhead: Playhead
-    is_computed: bool
-    """Whether the run is still computed."""
-
-
-@cache
-def stage_view(members: tuple[tuple[str, type[Record]], ...]) -> type[StageView]:
-    """Return the record of a stage's state, with members of these names and types."""
-    return extended(StageView, dict(members))
 
 
 class Stage:
@@ -363,39 +295,22 @@ class Stage:
 
     def _plan(self, now: float) -> bool:
         """Plan the playhead anew unless the picture still follows it; return if that was needed."""
-        before, show = self._playhead, self._show
-        is_held = not self._playing or show.ended
-        off = abs(before.time_at(now) - show.time_s)
-        is_off = off > _DRIFT_S * max(before.rate_at(now), 1.0)
-        is_used_up = not is_held and before.rate > 0 and before.ends_s - now < _NEARLY_USED_UP_S
-        # Of a picture that is held, only the time bar shows what is computed.
-        has_grown = before.computed_s != _milliseconds(show.computed_s)
-        has_grown &= not is_held or now - before.at_s >= _GROWTH_TOLD_S
-        if not (is_off or is_used_up or has_grown):
-            return False
-        self._playhead = self._planned(now)
-        return True
+        is_outdated = planning.is_outdated(self._playhead, self._show, now, is_held=self._is_held)
+        if is_outdated:
+            self._playhead = self._planned(now)
+        return is_outdated
 
     def _planned(self, now: float) -> Playhead:
         """Return the playhead from a time of the clock on [s]."""
-        show, run = self._show, self._state.run
+        run = self._state.run
         is_computed = run is not None and run.is_computed
-        points = [(0.0, show.time_s)]
-        rate = 0.0
-        if self._playing and not show.ended:
-            longest_s = _PLANNED_LIVE_S if is_computed else _PLANNED_S
-            points = show.upcoming(self._speed, longest_s)
-            if len(points) > 1 and points[-1][0] >= longest_s:
-                (begin_s, before_s), (end_s, after_s) = points[-2:]
-                rate = (after_s - before_s) / (end_s - begin_s)
-        return Playhead(
-            at_s=round(now, 4),
-            points=[(round(after_s, 4), round(time_s, 4)) for after_s, time_s in points],
-            rate=round(rate, 4),
-            computed_s=_milliseconds(show.computed_s),
-            duration_s=None if show.duration_s is None else _milliseconds(show.duration_s),
-            time_out_s=None if show.time_out_s is None else _milliseconds(show.time_out_s),
+        return planning.planned(
+            self._show, now, self._speed, is_held=self._is_held, is_computed=is_computed
         )
+
+    @property
+    def _is_held(self) -> bool:
+        return not self._playing or self._show.ended
 
     def _run_label(self) -> RunLabel:
         run = self._state.run
@@ -585,11 +500,6 @@ class Stage:
     def _publish(self) -> None:
         self._playhead = self._planned(self.now())
         self._channel.publish("stage", self.state())
-
-
-def _milliseconds(time_s: float) -> float:
-    """Round a time [s] as pages have it in the figures of a moment."""
-    return round(time_s, 3)
 
 
 def _staged(run: Run) -> StagedRun:

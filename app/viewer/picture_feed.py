@@ -10,7 +10,8 @@ from typing import NamedTuple
 from app.answer import Answer, Count
 from app.events.bus import Channel
 from app.events.event_records import ViewersEvent
-from app.stage.stage import Picture, Stage
+from app.stage.stage import Stage
+from app.stage.stage_view import Picture
 from app.viewer.replay_frames import ReplayFrames
 from hexapods.domain.errors import HexapodError
 from hexapods.runs.clocks import Clock

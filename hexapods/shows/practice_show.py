@@ -10,6 +10,7 @@ puts the ground under it is the frame's `origin`.
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
+from dataclasses import replace
 from operator import attrgetter, itemgetter
 
 import numpy as np
@@ -24,7 +25,7 @@ from hexapods.runs.recording import PracticeRecording, pose_at
 from hexapods.runs.records import ActionValues, StepTaken
 from hexapods.shows.race_lane import MARCHING_M, MARCHING_STEPS
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.show import PlayedShow, ReplayMark, RunLabel
+from hexapods.shows.show import PlayedShow, ReplayMark, RunLabel, on_start_line
 from hexapods.shows.stage_frame import (
     AT_ORIGIN,
     ActionValuesView,
@@ -216,15 +217,8 @@ class PracticeShow(PlayedShow):
 
     def start(self, run_label: RunLabel) -> StageFrame:
         """Return the frame before the first step, which what is recorded does not change."""
-        return StageFrame(
-            spec=self.spec,
-            run_id=run_label.run_id,
-            phase="start-line",
-            label=run_label.name,
-            lanes=(self._at_rest(),),
-            duration_s=self.duration_s,
-            replay=run_label.replay,
-        )
+        frame = on_start_line(self.spec, run_label, (self._at_rest(),))
+        return replace(frame, duration_s=self.duration_s)
 
     def _at_rest(self) -> LaneFrame:
         at_start = self._world().as_of(0)

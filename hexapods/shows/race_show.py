@@ -12,7 +12,7 @@ from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import time_out_s as time_out_of
 from hexapods.shows.race_lane import RaceLane
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.show import PlayedShow, ReplayMark, RunLabel
+from hexapods.shows.show import PlayedShow, ReplayMark, RunLabel, on_start_line
 from hexapods.shows.stage_frame import LaneFrame, Phase, SceneSpec, StageFrame
 
 SPEED, LAST_LANE_SPEED = 2.0, 8.0
@@ -243,16 +243,9 @@ class RaceShow(PlayedShow):
 
     def start(self, run_label: RunLabel) -> StageFrame:
         """Return the frame before the first step, which what is recorded does not change."""
-        return StageFrame(
-            spec=self.spec,
-            run_id=run_label.run_id,
-            phase="start-line",
-            label=run_label.name,
-            lanes=self._at_rest(),
-            ghost_lanes=(None,) * len(self._original_lanes),
-            clock=self.clock,
-            replay=run_label.replay,
-        )
+        frame = on_start_line(self.spec, run_label, self._at_rest())
+        ghosts = (None,) * len(self._original_lanes)
+        return replace(frame, ghost_lanes=ghosts, clock=self.clock)
 
     def _at_rest(self) -> tuple[LaneFrame, ...]:
         at_start = self._world.as_of(0)

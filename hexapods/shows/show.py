@@ -154,6 +154,13 @@ class PlayedShow:
         return simplified(points)
 
 
+def on_start_line(spec: SceneSpec, run_label: RunLabel, lanes: tuple[LaneFrame, ...]) -> StageFrame:
+    """Return the frame of a run before its first step, with its lanes at rest."""
+    return StageFrame(
+        spec, run_label.run_id, "start-line", run_label.name, lanes, replay=run_label.replay
+    )
+
+
 class IdleShow:
     """Show of an idle stage: robots stand still on the start line."""
 

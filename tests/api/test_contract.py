@@ -25,7 +25,7 @@ from app.feature import stage_members
 from app.installed_features import load
 from app.server import create_app
 from app.settings import Settings
-from app.stage.stage import stage_view
+from app.stage.stage_view import stage_view
 from app.stage.timeline import TimelineView
 from hexapods.domain.errors import HexapodError
 from tests.api.calls import WALK, Api
