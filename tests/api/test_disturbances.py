@@ -100,7 +100,7 @@ def test_an_end_after_the_run_is_refused_wherever_one_is_asked_for(api: Api) -> 
     ):
         words = "until_step must be at most 60, the end of this run, not 61"
         refused(api.call("POST", path, json=body), 422, words)
-    run = api.train(steps=60, pace=0.1)
+    run = api.until(api.train(steps=60, pace=0.1), lambda now: now["state"] == "running")
     refused(disturb(api, run, noise), 422, "until_step must be at most 60")
     api.stop(run)
 
