@@ -171,8 +171,7 @@ class _Builder:
             mass_kg=mass_kg,
             body_height_m=-float(np.mean(foot_heights)),
             reaches_grid=reaches,
-            guesses=tuple(self._notes.guesses),
-            repairs=tuple(self._notes.repairs),
+            notes=self._notes.collected(),
         )
 
     def _chain(self, leg: FoundLeg) -> LegChain:
@@ -228,16 +227,21 @@ class _Builder:
         if short:
             numbers = ", ".join(map(str, short))
             self._notes.guess(
-                f"legs {numbers} have two joints: their feet follow a grid only as far as they can"
+                "legs",
+                f"legs {numbers} have two joints: their feet follow a grid only as far as they can",
             )
         elif not reaches:
-            self._notes.guess("at home not every foot reaches to all sides: take a small grid")
+            self._notes.guess(
+                "stance", "at home not every foot reaches to all sides: take a small grid"
+            )
         unlimited = [joint for joint in self._joints if self._limits[joint] is None]
         if unlimited:
             which = (
                 "all joints" if len(unlimited) == len(self._joints) else f"{len(unlimited)} joints"
             )
-            self._notes.guess(f"{which} have no limits in the file: 90° to each side of home")
+            self._notes.guess(
+                "joints", f"{which} have no limits in the file: 90° to each side of home"
+            )
 
     def _ends(self) -> dict[int | None, FloatArray]:
         """Return the two end points of each link in the body frame, (2, 3) [m], by joint."""

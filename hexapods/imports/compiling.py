@@ -112,14 +112,16 @@ def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
         return True
     if "balanceinertia" in problem and not spec.compiler.balanceinertia:
         spec.compiler.balanceinertia = True
-        notes.repair("inertias that no body can have (A + B < C) were replaced by their mean")
+        notes.repair(
+            "masses", "inertias that no body can have (A + B < C) were replaced by their mean"
+        )
         return True
     if "mesh" in problem and any(word in problem for word in ("volume", "orient", "inertia")):
         return _weigh_as_shells(spec, notes)
     if "key" in problem and "invalid" in problem and spec.keys:
         for key in list(spec.keys):
             spec.delete(key)
-        notes.repair("keyframes do not fit the joints, and were left out")
+        notes.repair("stance", "keyframes do not fit the joints, and were left out")
         return True
     return False
 
@@ -144,7 +146,9 @@ def _weigh_as_shells(spec: mujoco.MjSpec, notes: Notes) -> bool:
     for mesh in changed:
         mesh.inertia = _SHELL
     if changed:
-        notes.repair("some meshes enclose no volume: for the mass meshes count as thin shells")
+        notes.repair(
+            "masses", "some meshes enclose no volume: for the mass meshes count as thin shells"
+        )
     return bool(changed)
 
 
@@ -173,7 +177,8 @@ def _mend_inertias(spec: mujoco.MjSpec, notes: Notes) -> None:
         mended.append(body.name)
     if mended:
         notes.repair(
-            f"the inertia of {listed(mended)} was not positive, and was replaced by that of a ball"
+            "masses",
+            f"the inertia of {listed(mended)} was not positive, and was replaced by that of a ball",
         )
 
 

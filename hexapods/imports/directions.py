@@ -62,7 +62,7 @@ def find_forward(
         ahead, why = np.array([0.0, 1.0]), "since the legs are symmetric to that axis"
     angle = math.degrees(math.atan2(ahead[1], ahead[0]))
     axis = min(_AXES, key=lambda name: abs(_wrapped(angle - _AXES[name])))
-    notes.guess(f"forward is {axis} of the file's frame, {why}")
+    notes.guess("forward", f"forward is {axis} of the file's frame, {why}")
     return _AXES[axis]
 
 
@@ -159,8 +159,9 @@ def find_gait(places: FloatArray, choices: Choices, notes: Notes) -> str | GaitS
     gait = resolve(spec, azimuths)
     groups = "; ".join(" ".join(map(str, group)) for group in gait.groups)
     notes.guess(
+        "groups",
         f"legs move in {counted(len(gait.groups), 'group')}: {groups}"
-        + ("" if name is None or spec != name else f" ({name})")
+        + ("" if name is None or spec != name else f" ({name})"),
     )
     return spec
 

@@ -50,7 +50,8 @@ def find_meshes(
         aim *= 0.7
     if triangles < 0.9 * before:
         notes.repair(
-            f"what is drawn was simplified from {before:,} to {counted(triangles, 'triangle')}"
+            "meshes",
+            f"what is drawn was simplified from {before:,} to {counted(triangles, 'triangle')}",
         )
     return meshes
 

@@ -6,6 +6,7 @@ from typing import Literal
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.records import Record
 from hexapods.domain.robot_model import RobotModel
+from hexapods.imports.notes import Note
 
 FileFormat = Literal["mjcf", "urdf"]
 
@@ -42,8 +43,7 @@ class ImportedRobot(Record):
         body_height_m: height of the torso's centre above the centres of the feet.
         reaches_grid: whether each foot at home reaches the corners of a box around it, which is
             about as large as a foot grid that suits the robot.
-        guesses: what was found out and may be otherwise, a sentence each.
-        repairs: what was changed, a sentence each.
+        notes: what was guessed and repaired.
     """
 
     model: RobotModel
@@ -58,5 +58,14 @@ class ImportedRobot(Record):
     mass_kg: float
     body_height_m: float
     reaches_grid: bool
-    guesses: tuple[str, ...]
-    repairs: tuple[str, ...]
+    notes: tuple[Note, ...]
+
+    @property
+    def guesses(self) -> tuple[str, ...]:
+        """What was inferred and may be otherwise, a sentence each."""
+        return tuple(note.text for note in self.notes if note.kind == "guess")
+
+    @property
+    def repairs(self) -> tuple[str, ...]:
+        """What was changed, a sentence each."""
+        return tuple(note.text for note in self.notes if note.kind == "repair")

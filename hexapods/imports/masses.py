@@ -75,7 +75,9 @@ def find_masses(
         masses[joint] = Mass(LEAST_KG, ends[joint][0], np.eye(3) * _LEAST_INERTIA)
     if unknown:
         names = listed(links[joint] for joint in unknown)
-        notes.guess(f"the file gives no mass for {names}: guessed by its shapes or by the others")
+        notes.guess(
+            "masses", f"the file gives no mass for {names}: guessed by its shapes or by the others"
+        )
     return masses
 
 

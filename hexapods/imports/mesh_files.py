@@ -76,8 +76,9 @@ class MeshFiles:
             kinds = sorted(set(names))
             if kinds:
                 self._notes.repair(
+                    "meshes",
                     f"{counted(len(kinds), 'mesh', 'meshes')} {'is' if len(kinds) == 1 else 'are'} "
-                    f"{what}; simple shapes are drawn instead: {listed(kinds)}"
+                    f"{what}; simple shapes are drawn instead: {listed(kinds)}",
                 )
 
     def _take(self, path: str) -> str | None:
@@ -101,7 +102,8 @@ class MeshFiles:
             raise DamagedFile(f"its meshes have more than {MAX_ALL_BYTES:,} bytes together")
         if content.startswith(b"version https://git-lfs"):
             self._notes.repair(
-                f"{quoted(path)} is a pointer of Git LFS, not the mesh: `git lfs pull` gets it"
+                "meshes",
+                f"{quoted(path)} is a pointer of Git LFS, not the mesh: `git lfs pull` gets it",
             )
             return None
         if ending == ".obj":
@@ -111,7 +113,7 @@ class MeshFiles:
         try:
             corners = read_collada(content, posixpath.basename(path))
         except DamagedFile as error:
-            self._notes.repair(f"a mesh was left out: {error}")
+            self._notes.repair("meshes", f"a mesh was left out: {error}")
             return None
         return _simplified(corners, path, self._notes)
 
@@ -137,7 +139,8 @@ def _simplified(corners: FloatArray, path: str, notes: Notes) -> bytes:
     flat = corners.reshape(-1, 3).astype(np.float64)
     vertices, faces = cluster(flat, numbers, _SIMPLIFIED_ABOVE)
     notes.repair(
-        f"mesh {quoted(path)} was simplified from {len(corners):,} to {len(faces):,} triangles"
+        "meshes",
+        f"mesh {quoted(path)} was simplified from {len(corners):,} to {len(faces):,} triangles",
     )
     return _as_stl(vertices[faces])
 

@@ -112,8 +112,9 @@ def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
     )
     if mechanisms:
         notes.repair(
+            "joints",
             f"left out what connects bodies beside joints ({', '.join(map(quoted, mechanisms))}): "
-            "each joint gets a servo of its own"
+            "each joint gets a servo of its own",
         )
 
 

@@ -101,7 +101,9 @@ def _best_document(upload: Upload, paths: Sequence[str], notes: Notes) -> tuple[
     _, path, root = min(robots, key=lambda robot: robot[0])
     if len(robots) > 1:
         other_paths = listed(other for _, other, _ in robots if other != path)
-        notes.guess(f"of the documents in the zip the robot is {quoted(path)}, not: {other_paths}")
+        notes.guess(
+            "file", f"of the documents in the zip the robot is {quoted(path)}, not: {other_paths}"
+        )
     if root.tag == "robot":
         check_expanded(root)
     return path, root

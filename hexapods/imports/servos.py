@@ -79,8 +79,9 @@ def find_servos(
     if choices.servo_torque_nm is None and without:
         which = "all joints" if len(without) == len(joints) else counted(len(without), "joint")
         notes.guess(
+            "servos",
             f"the largest torque of {which} is {guess_nm:.3g} N·m, by the robot's mass and size: "
-            "the file gives none that is likely"
+            "the file gives none that is likely",
         )
     servos, raised = {}, 0
     for joint in joints:
@@ -101,8 +102,9 @@ def find_servos(
         )
     if raised:
         notes.repair(
+            "servos",
             f"the armature of {counted(raised, 'joint')} was raised to {_ARMATURE_SHARE:g} of the "
-            "torque limit: with less, stiff servos make standing feet creep"
+            "torque limit: with less, stiff servos make standing feet creep",
         )
     _tell_of_actuators(compiled.model, joints, notes)
     return servos
@@ -148,11 +150,12 @@ def _tell_of_actuators(model: mujoco.MjModel, joints: Sequence[int], notes: Note
     actuators = [actuator for joint in joints for actuator in _actuators(model, joint)]
     motors = [actuator for actuator in actuators if _is_motor(model, actuator)]
     if not actuators:
-        notes.repair("no joint had an actuator; each has a position servo now")
+        notes.repair("servos", "no joint had an actuator; each has a position servo now")
     elif motors:
-        notes.repair(f"{counted(len(motors), 'motor')} became position servos")
+        notes.repair("servos", f"{counted(len(motors), 'motor')} became position servos")
     else:
         notes.repair(
+            "servos",
             f"servos have their largest torque at an error of {_FULL_TORQUE_RAD:g} rad, whatever "
-            "gains the file gives"
+            "gains the file gives",
         )

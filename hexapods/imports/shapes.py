@@ -112,7 +112,9 @@ def drop_touching(
     """Drop the shapes that would touch the ground at home, where only feet have contact."""
     clear = [shape for shape, low in zip(shapes, lowest_m, strict=True) if low > ground_m]
     if len(clear) < len(shapes):
-        notes.repair("shapes of legs that would touch the ground before the feet were left out")
+        notes.repair(
+            "shapes", "shapes of legs that would touch the ground before the feet were left out"
+        )
     return clear
 
 

@@ -138,7 +138,7 @@ class _Finder:
         other_roots = [body for body in roots if body != best]
         if other_roots:
             names = listed(self._compiled.body_name(body) for body in other_roots)
-            self._notes.repair(f"left out what is not joined to the robot: {names}")
+            self._notes.repair("links", f"left out what is not joined to the robot: {names}")
         return best
 
     def _below(self, root: int) -> Iterator[int]:
@@ -233,7 +233,9 @@ class _Finder:
                 "foot; name the feet if there are others"
             )
         names = listed(sorted(leg.foot.name for leg in legs))
-        self._notes.guess(f"its {len(legs)} legs are the chains that reach lowest, to: {names}")
+        self._notes.guess(
+            "legs", f"its {len(legs)} legs are the chains that reach lowest, to: {names}"
+        )
         return legs
 
     def _is_no_leg(self, leg: FoundLeg) -> bool:
@@ -306,9 +308,11 @@ class _Finder:
         if kinds == [int(mujoco.mjtJoint.mjJNT_FREE)]:
             return
         if joints:
-            self._notes.repair(f"{name} moved by {counted(len(joints), 'joint')}; now it is free")
+            self._notes.repair(
+                "base", f"{name} moved by {counted(len(joints), 'joint')}; now it is free"
+            )
         else:
-            self._notes.repair(f"{name} was fixed to the world; now it is free")
+            self._notes.repair("base", f"{name} was fixed to the world; now it is free")
 
     def _tell_of_locked(self, locked: Sequence[int], wheels: set[int]) -> None:
         for which, what in (
@@ -317,7 +321,7 @@ class _Finder:
         ):
             if which:
                 names = listed(self._compiled.joint_name(joint) for joint in which)
-                self._notes.repair(f"it has {what}: {names}")
+                self._notes.repair("joints", f"it has {what}: {names}")
 
 
 def _shared(leg: FoundLeg, other: FoundLeg) -> int:

@@ -107,15 +107,15 @@ def _stance_of_file(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Ang
     for name in sorted(robot.keyframes, key=_suitability):
         problem = _problem(robot, robot.keyframes[name])
         if problem is None:
-            notes.guess(f"it stands as in keyframe {quoted(name)}")
+            notes.guess("stance", f"it stands as in keyframe {quoted(name)}")
             return _within(robot, robot.keyframes[name])
         tried.append(f"in keyframe {quoted(name)} {problem}")
     problem = _problem(robot, robot.at_rest)
     if problem is None:
-        notes.guess("it stands as the file begins, all angles 0")
+        notes.guess("stance", "it stands as the file begins, all angles 0")
         return _within(robot, robot.at_rest)
     tried.append(f"as the file begins {problem}")
-    notes.guess(f"it stands with bent knees, as was searched: {'; '.join(tried[:3])}")
+    notes.guess("stance", f"it stands with bent knees, as was searched: {'; '.join(tried[:3])}")
     return search(robot)
 
 
@@ -179,11 +179,14 @@ def _level(robot: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
             unreached.append(number + 1)
     if unreached:
         notes.guess(
+            "stance",
             f"at home the feet are not level: legs {', '.join(map(str, unreached))} do not reach "
-            "the height of the others"
+            "the height of the others",
         )
     elif np.ptp(bottoms) > 1e-3:
-        notes.repair(f"the feet stood up to {1000 * np.ptp(bottoms):.0f} mm uneven; now level")
+        notes.repair(
+            "stance", f"the feet stood up to {1000 * np.ptp(bottoms):.0f} mm uneven; now level"
+        )
     return moved
 
 
