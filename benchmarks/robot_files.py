@@ -19,7 +19,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import resolve
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.suggestions import usual_grid_side_m
-from hexapods.imports.child import read_robot_file
+from hexapods.imports.child import inspect_robot_file
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import silence_mujoco
 from hexapods.imports.imported import ImportedRobot
@@ -40,12 +40,12 @@ def main() -> int:
         path, _, document = named.partition(":")
         data = _content(Path(path))
         choices = Choices(file=document or None)
-        read = read_in_this_process if options.in_this_process else read_robot_file
+        read = read_in_this_process if options.in_this_process else inspect_robot_file
         if options.in_this_process:
             silence_mujoco()
         began_s = time.perf_counter()
         try:
-            robot = read(data, Path(path).name, choices)
+            robot = read(data, Path(path).name, choices).valid_robot()
         except InvalidInput as error:
             refused += 1
             print(f"{named}: refused: {error}")

@@ -10,6 +10,7 @@ with limits (docs/decisions/0011). There `reading` goes through the steps:
   the legs; `stance` finds how it stands, by the kinematics of `chain`; `masses` and `servos` fill
   in what is missing; `shapes` finds what touches the ground, from `surfaces`; `drawing` what is
   drawn.
-- `building` makes a `RobotModel` of all. `choices` are decisions of a person, `notes` guesses and
+- `building` makes a `RobotModel` of all, `sketch` a picture of the bodies in the file, for a person
+  who corrects what was guessed. `choices` are decisions of a person, `notes` guesses and
   repairs, `imported` the result.
 """

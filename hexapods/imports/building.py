@@ -4,7 +4,6 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import mujoco
 import numpy as np
 
 from hexapods.domain.errors import InvalidInput
@@ -26,7 +25,7 @@ from hexapods.imports.drawing import find_meshes
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
-from hexapods.imports.posed_robot import PosedRobot, resting_pose
+from hexapods.imports.posed_robot import PosedRobot, initial_pose, keyframes_of
 from hexapods.imports.servos import (
     FoundServo,
     angle_limits,
@@ -42,7 +41,7 @@ _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
 _SAME_PLACE_M = 1e-3
 _PLAIN_WORDS = frozenset({"", "joint", "jnt", "link", "leg", "j", "motor", "servo"})
-_MAX_JOINT_NAME, _MAX_KEYFRAMES = 24, 50
+_MAX_JOINT_NAME = 24
 Names = list[tuple[str, ...]]
 
 
@@ -67,29 +66,13 @@ def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes
     Raises:
         InvalidInput: if the file is no robot with legs, or a choice is not possible.
     """
-    keyframes = _keyframes(compiled.model)
-    rest = keyframes[_resting(keyframes)] if keyframes else compiled.model.qpos0
-    pose = resting_pose(compiled.model, rest)
+    pose = initial_pose(compiled.model)
     skeleton = find_skeleton(compiled, pose, choices, notes)
     posed = PosedRobot(compiled, skeleton, pose)
     names = [_names_of(compiled, leg) for leg in posed.legs]
     posed.turn(find_forward(posed.mounts()[:, :2], names, choices, notes))
     posed.order(numbered(_places(posed)))
-    return _Builder(posed, keyframes, origin, choices, notes).build()
-
-
-def _keyframes(model: mujoco.MjModel) -> dict[str, FloatArray]:
-    """Return `qpos` of each keyframe that is finite, by name; of very many the first."""
-    keyframes = {}
-    for key in range(min(model.nkey, _MAX_KEYFRAMES)):
-        qpos = np.array(model.key_qpos[key])
-        if np.isfinite(qpos).all():
-            keyframes[model.key(key).name or f"keyframe {key + 1}"] = qpos
-    return keyframes
-
-
-def _resting(keyframes: Mapping[str, FloatArray]) -> str:
-    return next((name for name in keyframes if "home" in name.lower()), next(iter(keyframes)))
+    return _Builder(posed, keyframes_of(compiled.model), origin, choices, notes).build()
 
 
 def _names_of(compiled: Compiled, leg: FoundLeg) -> list[str]:

@@ -25,7 +25,7 @@ from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import message, visible
 from hexapods.imports.choices import AS_FOUND, Choices
-from hexapods.imports.imported import ImportedRobot
+from hexapods.imports.imported import ImportedRobot, RobotReading
 from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.processes import Child, SetUp
 
@@ -81,6 +81,23 @@ def read_robot_file(
         InvalidInput: one sentence: what is wrong with the file or a choice, and what is valid.
         NotRead: if no process can be started.
     """
+    return inspect_robot_file(data, file_name, choices, limits).valid_robot()
+
+
+def inspect_robot_file(
+    data: bytes,
+    file_name: str | None = None,
+    choices: Choices = AS_FOUND,
+    limits: ReadingLimits = LIMITS,
+) -> RobotReading:
+    """Read a file for a person to look at: what is no robot yet is drawn, too.
+
+    Arguments as those of `read_robot_file`.
+
+    Raises:
+        InvalidInput: if the file cannot even be drawn: what is wrong with it, and what is valid.
+        NotRead: if no process can be started.
+    """
     if len(data) > MAX_UPLOAD_BYTES:
         raise DamagedFile(
             f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"
@@ -96,7 +113,7 @@ def read_robot_file(
             data,
             limits,
         )
-    return _imported(answer)
+    return _reading(answer)
 
 
 def _ask(head: dict[str, Any], data: bytes, limits: ReadingLimits) -> bytes:
@@ -183,13 +200,13 @@ def _too_much_memory(most_bytes: int) -> str:
     return f"reading it takes more than {most_bytes >> 20} MB: simplify its meshes"
 
 
-def _imported(answer: bytes) -> ImportedRobot:
+def _reading(answer: bytes) -> RobotReading:
     """Validate the answer of a child."""
     try:
         answer_document = json.loads(answer)
         error = answer_document.get("error")
         if error is None:
-            return from_json(ImportedRobot, answer_document["robot"])
+            return from_json(RobotReading, answer_document["reading"])
         kind = DamagedFile if answer_document.get("is_damaged") else InvalidInput
     except (ValueError, KeyError, AttributeError, TypeError) as problem:
         _logger.warning("the process that reads robots gave no valid answer: %s", problem)
@@ -223,15 +240,15 @@ def _answer_once(pipe: Connection) -> None:
         choices = from_json(Choices, head["choices"])
 
         def read() -> dict[str, Any]:
-            return {"robot": to_json(read_in_this_process(data, head["file_name"], choices))}
+            return {"reading": to_json(read_in_this_process(data, head["file_name"], choices))}
 
-        answer = json.dumps(_robot_or_error(read, head["memory_bytes"])).encode()
+        answer = json.dumps(_reading_or_error(read, head["memory_bytes"])).encode()
     except MemoryError:
         answer = json.dumps({"error": _too_much_memory(head["memory_bytes"])}).encode()
     pipe.send_bytes(answer)
 
 
-def _robot_or_error(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, Any]:
+def _reading_or_error(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, Any]:
     """Return the robot that was read, or the error as a sentence, in plain types."""
     try:
         return read()

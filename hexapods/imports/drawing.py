@@ -9,6 +9,7 @@ import numpy as np
 from hexapods.domain.robot_model import MAX_TRIANGLES, ModelMesh
 from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
+from hexapods.imports.compiling import Compiled
 from hexapods.imports.decimation import cluster
 from hexapods.imports.notes import Notes
 from hexapods.imports.posed_robot import PosedRobot
@@ -41,7 +42,7 @@ def find_meshes(
         meshes = {
             joint: merged
             for joint, parts in geoms.items()
-            if (merged := _merged([simplified.surface(geom) for geom in parts], origins[joint]))
+            if (merged := merged_mesh([simplified.surface(geom) for geom in parts], origins[joint]))
         }
         triangles = sum(mesh.triangles for mesh in meshes.values())
         size = sum(len(mesh.vertices) + len(mesh.faces) for mesh in meshes.values())
@@ -57,16 +58,20 @@ def find_meshes(
 
 
 def _drawn(posed: PosedRobot, joint: int | None) -> list[int]:
-    """Return the geoms that are drawn of a link: those that do not collide.
+    bodies = posed.bodies_of(joint)
+    return [geom for body in bodies for geom in drawn_geoms(posed.compiled, body)]
+
+
+def drawn_geoms(compiled: Compiled, body: int) -> list[int]:
+    """Return the geoms that are drawn of a body: those that do not collide.
 
     Of a body that has no such geoms, or of which a mesh is missing, all geoms are drawn.
     """
-    drawn, compiled = [], posed.compiled
-    for body in posed.bodies_of(joint):
-        geoms = posed.geoms_of([body])
-        shown = [geom for geom in geoms if not compiled.collides[geom]]
-        drawn += geoms if compiled.body_name(body) in compiled.undrawn else shown or geoms
-    return drawn
+    start, count = int(compiled.model.body_geomadr[body]), int(compiled.model.body_geomnum[body])
+    geoms = [*range(start, start + count)]
+    if compiled.body_name(body) in compiled.undrawn:
+        return geoms
+    return [geom for geom in geoms if not compiled.collides[geom]] or geoms
 
 
 class _Simplified:
@@ -88,7 +93,8 @@ class _Simplified:
         return self._posed.placed(geom, self._known[key])
 
 
-def _merged(parts: Sequence[Triangles], origin: FloatArray) -> ModelMesh | None:
+def merged_mesh(parts: Sequence[Triangles], origin: FloatArray) -> ModelMesh | None:
+    """Return several surfaces as one mesh, relative to an origin; None if nothing is left."""
     all_vertices, all_faces, start = [], [], 0
     for vertices, faces in parts:
         if len(faces) and np.isfinite(vertices).all():

@@ -1,11 +1,12 @@
-"""A robot that was read from a file, and all that was guessed and repaired on the way."""
+"""What was read from a file: a robot, what was guessed and repaired, and how it looks."""
 
 from dataclasses import dataclass
 from typing import Literal
 
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.records import Record
-from hexapods.domain.robot_model import RobotModel
+from hexapods.domain.robot_model import ModelMesh, RobotModel, Vector
 from hexapods.imports.notes import Note
 
 FileFormat = Literal["mjcf", "urdf"]
@@ -69,3 +70,83 @@ class ImportedRobot(Record):
     def repairs(self) -> tuple[str, ...]:
         """What was changed, a sentence each."""
         return tuple(note.text for note in self.notes if note.kind == "repair")
+
+
+@dataclass(frozen=True)
+class SketchPart(Record):
+    """A body of the file.
+
+    Positions are in the frame of the sketch: x right, y forward, z up, the ground at z = 0.
+
+    Attributes:
+        name: its name in the file.
+        leg: number of its leg, from 1; 0 for the torso and what is of no leg.
+        foot: what `Choices.feet` calls it; null if it cannot be a foot.
+        at_m: middle of what is drawn of it, or the origin of its frame.
+        low_m: its lowest point.
+        mesh: what is drawn, in the frame of the sketch; null for a body without a shape.
+    """
+
+    name: str
+    leg: int
+    foot: str | None
+    at_m: Vector
+    low_m: Vector
+    mesh: ModelMesh | None
+
+
+@dataclass(frozen=True)
+class SketchFoot(Record):
+    """A foot of a leg, or where no legs were found, what could be one.
+
+    Attributes:
+        name: its name in the file, fit for `Choices.feet`.
+        leg: number of its leg, from 1; 0 where no legs were found.
+        at_m: its centre in the frame of the sketch.
+        radius_m: its radius.
+    """
+
+    name: str
+    leg: int
+    at_m: Vector
+    radius_m: float
+
+
+@dataclass(frozen=True)
+class Sketch(Record):
+    """Bodies and feet of a robot that stands, or of a file in which no robot was found.
+
+    Attributes:
+        parts: its bodies, parents first.
+        feet: its feet, in the order of its legs.
+    """
+
+    parts: tuple[SketchPart, ...]
+    feet: tuple[SketchFoot, ...]
+
+
+@dataclass(frozen=True)
+class RobotReading(Record):
+    """What was read from a file: a robot, or why there is none, and how it looks.
+
+    Attributes:
+        robot: the robot; null if its legs, its stance or a choice is not valid.
+        problem: why there is no robot; null if there is one.
+        notes: what was guessed and repaired, as far as it was read.
+        sketch: bodies and feet.
+    """
+
+    robot: ImportedRobot | None
+    problem: str | None
+    notes: tuple[Note, ...]
+    sketch: Sketch
+
+    def valid_robot(self) -> ImportedRobot:
+        """Return the robot.
+
+        Raises:
+            InvalidInput: if there is none, saying why.
+        """
+        if self.robot is None:
+            raise InvalidInput(self.problem or "it is no robot")
+        return self.robot

@@ -15,6 +15,7 @@ from hexapods.imports.compiling import Compiled
 from hexapods.imports.skeleton import FoundLeg, Skeleton
 from hexapods.imports.surfaces import Triangles, kind_of, triangles_of
 
+_MAX_KEYFRAMES = 50
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
@@ -46,8 +47,7 @@ class PosedRobot:
     def turn(self, forward_deg: float) -> None:
         """Turn the body frame: forward is this direction, anticlockwise from x of the file [°]."""
         self.turn_deg = forward_deg
-        cos, sin = math.cos(math.radians(forward_deg)), math.sin(math.radians(forward_deg))
-        self._turn = np.round([[sin, -cos, 0], [cos, sin, 0], [0, 0, 1]], 15)
+        self._turn = rotation_to_forward(forward_deg)
 
     def order(self, legs: Sequence[int]) -> None:
         """Number the legs."""
@@ -148,6 +148,35 @@ class PosedRobot:
             above = joint_of.get(int(model.body_parentid[body]))
             joint_of[body] = last.get(body, above)
         return joint_of
+
+
+def rotation_to_forward(forward_deg: float) -> FloatArray:
+    """Return the rotation to the body frame, in which y is forward, (3, 3).
+
+    Args:
+        forward_deg: direction of forward, anticlockwise from x of the file [°].
+    """
+    cos, sin = math.cos(math.radians(forward_deg)), math.sin(math.radians(forward_deg))
+    return np.round([[sin, -cos, 0], [cos, sin, 0], [0, 0, 1]], 15)
+
+
+def keyframes_of(model: mujoco.MjModel) -> dict[str, FloatArray]:
+    """Return `qpos` of each keyframe that is finite, by name; of very many the first."""
+    keyframes = {}
+    for key in range(min(model.nkey, _MAX_KEYFRAMES)):
+        qpos = np.array(model.key_qpos[key])
+        if np.isfinite(qpos).all():
+            keyframes[model.key(key).name or f"keyframe {key + 1}"] = qpos
+    return keyframes
+
+
+def initial_pose(model: mujoco.MjModel) -> FloatArray:
+    """Return `qpos` of the keyframe that is called home, else of the first, else of the file."""
+    keyframes = keyframes_of(model)
+    if not keyframes:
+        return resting_pose(model, model.qpos0)
+    home = next((name for name in keyframes if "home" in name.lower()), next(iter(keyframes)))
+    return resting_pose(model, keyframes[home])
 
 
 def resting_pose(model: mujoco.MjModel, like: FloatArray) -> FloatArray:

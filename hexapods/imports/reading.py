@@ -8,10 +8,11 @@ from hexapods.domain.text import MAX_NAME, visible
 from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import compile_document
-from hexapods.imports.imported import ImportedRobot
+from hexapods.imports.imported import RobotReading
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import clean_mjcf
 from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.sketch import sketch_robot
 from hexapods.imports.upload import MAX_DOCUMENT_BYTES, Upload
 from hexapods.imports.urdf import check_expanded, clean_urdf
 from hexapods.imports.xml import Element, read_xml, write_xml
@@ -22,11 +23,11 @@ _ROOTS = ("mujoco", "robot")
 _NO_NAMES = ("mujoco model", "robot", "scene")
 
 
-def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> ImportedRobot:
+def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> RobotReading:
     """Read a robot without limits of time and memory: only for a process that has them.
 
     Raises:
-        InvalidInput: naming what is wrong with the file or a choice.
+        InvalidInput: naming what is wrong with the file, if it cannot even be drawn.
     """
     notes = Notes()
     upload = Upload(data, file_name)
@@ -42,7 +43,11 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Impor
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
     origin = FileOrigin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
-    return build(compiled, origin, choices, notes)
+    try:
+        robot, problem = build(compiled, origin, choices, notes), None
+    except InvalidInput as error:
+        robot, problem = None, str(error)
+    return RobotReading(robot, problem, notes.collected(), sketch_robot(compiled, robot))
 
 
 def _name(named: str, path: str) -> str:

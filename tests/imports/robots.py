@@ -29,7 +29,8 @@ HOME = "0 0 0.3 1 0 0 0" + 4 * " 0 0.7 -1.4"
 def read(data: str | bytes, name: str = "robot.xml", choices: Choices = AS_FOUND) -> ImportedRobot:
     """Read a robot in this process, since these are no stranger's."""
     silence_mujoco()
-    return read_in_this_process(data.encode() if isinstance(data, str) else data, name, choices)
+    content = data.encode() if isinstance(data, str) else data
+    return read_in_this_process(content, name, choices).valid_robot()
 
 
 def dog(
