@@ -101,6 +101,10 @@ VALID: dict[str, str] = {
 }
 
 
+_NO_OBJECT = frozenset({"model_type", "model_attributes_type", "dict_type", "dataclass_type"})
+"""Types of Pydantic's errors about a body that is no JSON object."""
+
+
 def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
     """Convert Pydantic's errors to `field` and `detail`, one for each field.
 
@@ -115,6 +119,9 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
         path = [key for key in error["loc"] if key in fields or isinstance(key, int)]
         if error["type"] == "json_invalid":
             path = []
+        elif not path and error["type"] not in _NO_OBJECT:
+            # Of a record whose fields say by themselves what is valid, such as `choices`.
+            path = [key for key in error["loc"][1:] if isinstance(key, str | int)]
         field = ".".join(str(key) for key in path)
         details.setdefault(field, _sentence(field, error, path))
     return [{"field": field, "detail": detail} for field, detail in details.items()]
@@ -133,7 +140,11 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
     valid = _formats(names[-1], error) or VALID.get(field) or VALID.get(names[-1])
-    valid = valid or _length(error) or "given"
+    valid = valid or _length(error)
+    if valid is None and not is_missing:
+        is_unknown = error["type"] == "unexpected_keyword_argument"
+        return f"{field}: {'there is no such field' if is_unknown else error['msg'].lower()}."
+    valid = valid or "given"
     return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."
 
 

@@ -9,7 +9,7 @@ another program parses, so that a model from a stranger's archive is as harmless
 import hashlib
 import math
 import re
-from base64 import b64decode
+from base64 import b64decode, b64encode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -73,6 +73,12 @@ class ModelMesh(Record):
     vertices: str
     faces: str
     triangles: int
+
+    @classmethod
+    def of(cls, vertices: NDArray[Any], faces: NDArray[Any]) -> "ModelMesh":
+        """Return the mesh of vertices (n, 3) [m] and faces (m, 3)."""
+        floats, corners = vertices.astype("<f4"), faces.astype("<u4")
+        return cls(_base64(floats), _base64(corners), len(corners))
 
     def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
         """Return vertices (n, 3) [m] and faces (m, 3).
@@ -260,6 +266,10 @@ class RobotModel(Record):
             link = self.links[link.parent]
         if still := [name for name in names if name not in carrying]:
             yield f"joint {still[0]} of leg {leg} does not move its foot"
+
+
+def _base64(array: NDArray[Any]) -> str:
+    return b64encode(array.tobytes()).decode("ascii")
 
 
 def _content(value: Any) -> Any:

@@ -3,6 +3,7 @@
 - `scene` draws a frame: `track`, `robots`, `footgrid`, `ghosts`; and what happens in its world:
   `lane_ground`, `payload_and_push`, `condition_colors`. `temporary` are nodes that come and go.
 - `robot_mesh` builds meshes from the MJCF; `shapes` and `colormap` are its primitives.
+- `sketch` draws a robot on a turntable, before it is stored.
 - `replay_encoding` encodes a replay's frames as messages that a page plays by itself, and ghosts of
   `posture`; `pose_tracks` compresses the poses in them.
 - `viser_internals` has all that rests on viser's private parts, and the list of what is assumed. To

@@ -24,10 +24,12 @@ from hexapods.domain.types import Cells
 from hexapods.drawing.pose_tracks import PoseTracks, pose_arrays, rounded_poses
 from hexapods.drawing.posture import draw_posture
 from hexapods.drawing.scene import StageScene, grid_root
+from hexapods.drawing.sketch import draw_sketch
 from hexapods.drawing.track import WORLD
 from hexapods.drawing.viser_internals.messages import LIFECYCLES, Message, remap_buffers
 from hexapods.drawing.viser_internals.recorder import Recorded, recorder
 from hexapods.drawing.viser_internals.server import recorded_viser
+from hexapods.imports.imported import Sketch
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S, Replay
 from hexapods.shows.scene_view import scene_view
 from hexapods.shows.stage_frame import StageFrame
@@ -81,6 +83,14 @@ def encode_posture(frame: StageFrame, lane: int, cells: Cells) -> bytes:
             message for message in messages if f"{message.get('name')}/".startswith(f"{root}/")
         ]
         return _encode(iter([(Recorded(messages_of_ghost, arrays), {"time_s": frame.time_s})]))
+
+
+def encode_sketch(sketch: Sketch, groups: Sequence[Sequence[int]]) -> bytes:
+    """Return a robot on a turntable as a scene alone; arguments as those of `draw_sketch`."""
+    with recorded_viser() as server, recorder(server) as recording:
+        draw_sketch(server, sketch, groups)
+        frame = (recording.take(), {"time_s": 0.0, "follow": {}, "scene": None})
+        return _encode(iter([frame]), lifecycles=LIFECYCLES, world=WORLD)
 
 
 def _frames(replay: Replay, times_s: Sequence[float], check: Check) -> Iterator[_Frame]:

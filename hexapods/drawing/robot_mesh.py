@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.domain.kinematics import legs_of
+from hexapods.domain.legs import Joint
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray, IntArray
 from hexapods.domain.world import World
@@ -65,6 +66,15 @@ class RobotMesh:
             self._model.body(joint.label).id: joint for joint in legs_of(robot).joints
         }
         """The joint that moves a link, by the link's body id."""
+
+    @property
+    def body_parts(self) -> tuple[Part, ...]:
+        """The parts without the antenna."""
+        return self.parts[:-1]
+
+    def joint_of(self, link: int) -> Joint | None:
+        """Return the joint that moves a link, by the link's body id; None for the torso."""
+        return self._joint_of_link.get(link)
 
     def part_name(self, number: int) -> str:
         """Return the name of a part's scene node: whose links its instances are.

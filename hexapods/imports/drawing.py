@@ -1,6 +1,5 @@
 """Drawn shape of a robot: its own meshes, merged for each link and simplified."""
 
-import base64
 from collections.abc import Mapping, Sequence
 from itertools import chain
 
@@ -103,13 +102,4 @@ def merged_mesh(parts: Sequence[Triangles], origin: FloatArray) -> ModelMesh | N
             start += len(vertices)
     if not start:
         return None
-    corners = np.concatenate(all_faces).astype("<u4")
-    return ModelMesh(
-        _text(np.concatenate(all_vertices).astype("<f4").tobytes()),
-        _text(corners.tobytes()),
-        len(corners),
-    )
-
-
-def _text(data: bytes) -> str:
-    return base64.b64encode(data).decode("ascii")
+    return ModelMesh.of(np.concatenate(all_vertices), np.concatenate(all_faces))

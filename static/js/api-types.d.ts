@@ -552,6 +552,72 @@ export interface ChoiceView {
   sentences: string[];
 }
 /**
+ * Decisions of a person about a robot from a file; null fields are inferred from the file.
+ *
+ * This interface was referenced by `Root`'s JSON-Schema
+ * via the `definition` "Choices-Output".
+ */
+export interface ChoicesOutput {
+  /**
+   * of several robots in a zip the path of the one that is meant.
+   */
+  file: string | null;
+  /**
+   * direction in which it walks, in the frame of its torso in the file: `x`, `-x`, `y`, `-y`, or an angle anticlockwise from x [°].
+   */
+  forward: string | number | null;
+  /**
+   * for each leg the name of its foot in the file: of a body or link, of a geom, or of a site; in any order.
+   */
+  feet: [string, string, string, ...string[]] | null;
+  /**
+   * name of the keyframe of the file in which it stands.
+   */
+  keyframe: string | null;
+  /**
+   * angles of joints with which it stands, by their names in the file [rad]; each is as given, the others are as found.
+   */
+  home_rad: {
+    [k: string]: number;
+  } | null;
+  /**
+   * which legs move together: the name of a gait, or groups of legs.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      }
+    | null;
+  /**
+   * largest torque of all servos [N·m].
+   */
+  servo_torque_nm: number | null;
+  /**
+   * position gain of all servos [N·m/rad].
+   */
+  servo_kp: number | null;
+  /**
+   * velocity gain of all servos [N·m·s/rad].
+   */
+  servo_kv: number | null;
+}
+/**
  * Verdict on one of the paper's claims.
  */
 export interface ClaimVerdict {
@@ -3130,6 +3196,44 @@ export interface NewRoom {
   qr_code: string | null;
 }
 /**
+ * A guess or a repair, as a sentence with what it is about.
+ */
+export interface Note {
+  /**
+   * a guess is to be confirmed or corrected, a repair changed what the file says.
+   */
+  kind: "guess" | "repair";
+  /**
+   * what it is about; for most guesses `Choices` has a field by which to correct it.
+   */
+  topic:
+    | "file"
+    | "links"
+    | "base"
+    | "legs"
+    | "forward"
+    | "groups"
+    | "stance"
+    | "joints"
+    | "servos"
+    | "masses"
+    | "size"
+    | "shapes"
+    | "meshes";
+  /**
+   * the sentence, which names what is in the file.
+   */
+  text: string;
+  /**
+   * names in the file of the bodies and joints that it is about; empty for the whole.
+   */
+  parts: string[];
+  /**
+   * a choice that the sentence offers instead; null where it offers none.
+   */
+  offer: ChoicesOutput | null;
+}
+/**
  * Options, defaults, limits and help texts of all forms.
  */
 export interface OptionsView {
@@ -3711,6 +3815,106 @@ export interface RankedEntry {
   failures: number;
 }
 /**
+ * A leg of a robot that was read.
+ */
+export interface ReadLeg {
+  /**
+   * its number, from 1.
+   */
+  leg: number;
+  /**
+   * direction of its place on the torso, anticlockwise from body x.
+   */
+  azimuth_deg: number;
+  /**
+   * names of its joints in the file, from the torso to the foot.
+   */
+  joints: string[];
+  /**
+   * name of its foot in the file.
+   */
+  foot: string;
+}
+/**
+ * A body of the file. Positions are of the sketch: x right, y forward, z up, ground at 0.
+ */
+export interface ReadPart {
+  name: string;
+  /**
+   * number of its leg, from 1; 0 for the torso and what is of no leg.
+   */
+  leg: number;
+  /**
+   * what `feet` of the choices calls it; null if it cannot be a foot.
+   */
+  foot: string | null;
+  /**
+   * middle of what is drawn of it.
+   *
+   * @minItems 3
+   * @maxItems 3
+   */
+  at_m: [number, number, number];
+  /**
+   * its lowest point.
+   *
+   * @minItems 3
+   * @maxItems 3
+   */
+  low_m: [number, number, number];
+}
+/**
+ * A robot as it was read, before it is stored.
+ */
+export interface ReadRobot {
+  name: string;
+  /**
+   * which legs move together.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * legs of each group of this gait.
+   */
+  groups: number[][];
+  legs: ReadLeg[];
+  /**
+   * direction in which it walks, anticlockwise from x of its torso in the file.
+   */
+  forward_deg: number;
+  mass_kg: number;
+  /**
+   * height of the torso's centre above the centres of the feet.
+   */
+  body_height_m: number;
+  /**
+   * names of the file's keyframes.
+   */
+  keyframes: string[];
+  /**
+   * whether its feet reach a foot grid that suits its size.
+   */
+  reaches_grid: boolean;
+}
+/**
  * Why a trial has no result, with its key and its description in words.
  */
 export interface Reason {
@@ -3823,6 +4027,68 @@ export interface ReplayView {
 export interface ResultsView {
   code: string;
   cards: CardResultsView[];
+}
+/**
+ * What was read from a robot's file, for a person who confirms or corrects it.
+ */
+export interface RobotReadingView {
+  /**
+   * of the file, which the server keeps for a while; empty for a body.
+   */
+  id: string;
+  /**
+   * name of the file.
+   */
+  file: string;
+  choices: ChoicesOutput;
+  /**
+   * the robot; null if it cannot be stored as it is.
+   */
+  robot: ReadRobot | null;
+  /**
+   * why it cannot be stored; null if it can.
+   */
+  problem: string | null;
+  /**
+   * what was guessed and repaired.
+   */
+  notes: Note[];
+  /**
+   * bodies of the file.
+   */
+  parts: ReadPart[];
+  /**
+   * feet of its legs; of a file without a robot what could be feet.
+   */
+  feet: SketchFoot[];
+  /**
+   * it on a turntable, in base64, as `GET /start-line` encodes a scene. Its bodies are the nodes `/world/sketch/part/0`, `…/1`, in the order of `parts`; likewise `…/foot/0`.
+   */
+  scene: string;
+}
+/**
+ * A foot of a leg, or where no legs were found, what could be one.
+ */
+export interface SketchFoot {
+  /**
+   * its name in the file, fit for `Choices.feet`.
+   */
+  name: string;
+  /**
+   * number of its leg, from 1; 0 where no legs were found.
+   */
+  leg: number;
+  /**
+   * its centre in the frame of the sketch.
+   *
+   * @minItems 3
+   * @maxItems 3
+   */
+  at_m: [number, number, number];
+  /**
+   * its radius.
+   */
+  radius_m: number;
 }
 /**
  * The rooms that who asks may know: for a teacher all, for a participant their own.

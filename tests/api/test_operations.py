@@ -13,6 +13,7 @@ from app.api.deps import Services
 from app.server import create_app
 from app.settings import Settings
 from app.storage.errors import Busy
+from hexapods.domain.robot_documents import ID_DIGITS
 from tests.api.calls import ADDRESS, WALK, Api, refused
 from tests.features.needing import needs
 from tests.storage.stores import temporary_store
@@ -50,7 +51,8 @@ def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
         # Joins of rooms have a limit of their own.
         if ("idempotency-key" in headers and "/rooms/" not in path) or path.endswith(_START):
             starts.add(path)
-        if api.client.post(path.replace("{run_id}", "x"), json={}).status_code == 429:
+        address = path.replace("{run_id}", "x").replace("{robot_id}", "0" * ID_DIGITS)
+        if api.client.post(address, json={}).status_code == 429:
             limited.add(path)
     assert "/api/v1/runs/{run_id}/again" in starts
     assert limited == starts

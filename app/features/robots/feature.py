@@ -5,10 +5,12 @@ from typing import Any, ClassVar
 
 from fastapi import APIRouter
 
+from app.api.deps import Services
 from app.api.option_answers import SettingOption
 from app.feature import Feature
 from app.features.robots import routes
 from app.features.robots.body_fields import leg_fields, torso_fields
+from app.features.robots.readings import Readings
 from hexapods.runs.catalogue import setting_option
 
 
@@ -23,6 +25,10 @@ class RobotFeature(Feature):
         "leg_fields": dict[str, SettingOption],
         "torso_fields": dict[str, SettingOption],
     }
+
+    def __init__(self, core: Services) -> None:
+        super().__init__(core)
+        core.provide(Readings())
 
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:

@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
+from app.features.robots.readings import KeptFile, Readings
 from app.features.robots.response_models import FoundView
 from app.storage.database.robots import RobotOrigin
 from app.storage.database.store import RunStore
@@ -17,7 +18,7 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.gait import GaitSpec, gait_spec, read_gait, resolve
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.model_robot import ModelRobot, model_robot
-from hexapods.domain.records import to_json, to_json_bytes
+from hexapods.domain.records import from_json, to_json, to_json_bytes
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.domain.text import MAX_NAME, check_name, visible
@@ -27,8 +28,8 @@ from hexapods.imports.imported import ImportedRobot
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import preview
 
-MEMBERS = ("robot", "gait", "name")
-"""Members of the JSON object by which a body is stored."""
+_BODY_MEMBERS, _READING_MEMBERS = ("robot", "gait", "name"), ("reading", "choices", "name")
+"""Members of the JSON objects by which a body is stored, and a robot that was read."""
 _UNNAMED = "Robot"
 _RETRY_S = 5
 _TOLD = (
@@ -42,16 +43,22 @@ _FALLBACK = "one-by-one"
 
 
 def import_robot(
-    store: RunStore, data: bytes, name: str | None = None, file: str | None = None
+    store: RunStore,
+    data: bytes,
+    name: str | None = None,
+    file: str | None = None,
+    readings: Readings | None = None,
 ) -> tuple[StoredRobot, bool]:
     """Store a robot, unless it is stored already.
 
     Args:
         store: receives it.
         data: `{"robot": …, "gait": …, "name": …}`, of which gait and name may be missing; the
-            document of a robot; or MJCF or URDF, alone or in a zip.
+            document of a robot; `{"reading": id, "choices": …, "name": …}`; or MJCF or URDF, alone
+            or in a zip.
         name: its name; by default what the data say, or `Robot`, made distinct.
         file: name of the file.
+        readings: files that were looked at, where there are any.
 
     Returns:
         the robot as stored, and whether it is new.
@@ -66,15 +73,11 @@ def import_robot(
     if not data:
         raise InvalidInput(f"the body is empty: {_TOLD}")
     store.check_disk_space(len(data))
-    if _is_model(data):
-        imported = _read(data, file)
-        about, document = _of_file(imported, AS_FOUND, file)
-        chosen_name = (
-            name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
-        )
-        about = replace(about, name=_named(store, chosen_name or None))
-        return store.robots.add(document, about, RobotOrigin(data, _description(imported)))
+    if is_model_file(data):
+        return import_reading(store, _read(data, file), KeptFile(file or "", data), name)
     content = _json(data)
+    if "reading" in content and readings is not None:
+        return _store_reading(store, readings, content, name)
     if "format" in content:
         body, document = parse_document(data), data
         content = {}
@@ -82,8 +85,7 @@ def import_robot(
         body = robot(_member(content, "robot"))
         document = document_of(body)
         parse_document(document)  # which refuses numbers out of their limits
-    given_gait = content.get("gait")
-    gait = suiting_gait(body) if given_gait is None else read_gait(given_gait)
+    gait = _gait_of(content, body)
     check_stands(body, gait)
     about = StoredRobot(
         id=robot_documents.id_of(document),
@@ -91,6 +93,77 @@ def import_robot(
         gait=gait,
     )
     return store.robots.add(document, about)
+
+
+def read_body(data: bytes) -> tuple[Robot, str | GaitSpec]:
+    """Return the body of `{"robot": …, "gait": …}`, and its gait, by default one that suits it.
+
+    Raises:
+        InvalidInput: if it is none.
+    """
+    if not data:
+        raise InvalidInput(f"the body is empty: {_TOLD}")
+    content = _json(data)
+    body = robot(_member(content, "robot"))
+    return body, _gait_of(content, body)
+
+
+def _gait_of(content: Mapping[str, Any], body: Robot) -> str | GaitSpec:
+    gait = content.get("gait")
+    return suiting_gait(body) if gait is None else read_gait(gait)
+
+
+def _store_reading(
+    store: RunStore, readings: Readings, content: Mapping[str, Any], name: str | None
+) -> tuple[StoredRobot, bool]:
+    reading_id = content["reading"]
+    if not isinstance(reading_id, str):
+        raise InvalidInput("`reading` is the id of a reading, a text")
+    choices = AS_FOUND
+    if content.get("choices") is not None:
+        choices = from_json(Choices, content["choices"])
+    kept = readings.file(reading_id)
+    imported = readings.read(reading_id, choices).valid_robot()
+    given_name = name if name is not None else content.get("name")
+    return import_reading(store, imported, kept, given_name, choices)
+
+
+def stored_file(store: RunStore, robot_id: str) -> tuple[StoredRobot, bytes]:
+    """Return a stored robot with the file that it was read from.
+
+    Raises:
+        NotFound: if there is no such robot.
+        InvalidInput: if it is from no file.
+    """
+    stored, origin = store.robots.get(robot_id), store.robots.origin(robot_id)
+    if origin is None:
+        raise InvalidInput(f"{stored.name} is from no file here: there is nothing to read again")
+    return stored, origin.upload
+
+
+def import_reading(
+    store: RunStore,
+    imported: ImportedRobot,
+    kept: KeptFile,
+    name: str | None = None,
+    choices: Choices = AS_FOUND,
+) -> tuple[StoredRobot, bool]:
+    """Store a robot that was read from a file; name, result and errors as of `import_robot`.
+
+    Args:
+        store: receives it.
+        imported: the robot.
+        kept: the file.
+        name: its name; by default the file's.
+        choices: choices by which it was read.
+    """
+    store.check_disk_space(len(kept.data))
+    about, document = _of_file(imported, choices, kept.name or None)
+    chosen_name = (
+        name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
+    )
+    about = replace(about, name=_named(store, chosen_name or None))
+    return store.robots.add(document, about, RobotOrigin(kept.data, _description(imported)))
 
 
 def correct_robot(store: RunStore, robot_id: str, choices: Choices) -> StoredRobot:
@@ -105,14 +178,12 @@ def correct_robot(store: RunStore, robot_id: str, choices: Choices) -> StoredRob
         Busy: if no process can read the file at present.
         StorageFull: if there is too little disk space.
     """
-    stored, origin = store.robots.get(robot_id), store.robots.origin(robot_id)
-    if origin is None:
-        raise InvalidInput(f"{stored.name} is from no file here: there is nothing to read again")
-    store.check_disk_space(len(origin.upload))
-    imported = _read(origin.upload, stored.file, choices)
+    stored, upload = stored_file(store, robot_id)
+    store.check_disk_space(len(upload))
+    imported = _read(upload, stored.file, choices)
     about, document = _of_file(imported, choices, stored.file)
     return store.robots.replace(
-        robot_id, document, about, RobotOrigin(origin.upload, _description(imported))
+        robot_id, document, about, RobotOrigin(upload, _description(imported))
     )
 
 
@@ -153,8 +224,8 @@ def _description(imported: ImportedRobot) -> bytes:
     return to_json_bytes(description)
 
 
-def _is_model(data: bytes) -> bool:
-    """Whether data are a zip, or XML after blanks and a byte order mark."""
+def is_model_file(data: bytes) -> bool:
+    """Whether data are a zip, or XML after blanks and a byte order mark: no JSON."""
     return data.startswith(b"PK") or data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
@@ -214,7 +285,8 @@ def _json(data: bytes) -> dict[str, Any]:
         raise InvalidInput(f"it is no JSON that can be read: {_TOLD}") from error
     if not isinstance(content, Mapping):
         raise InvalidInput(f"it is no JSON object: {_TOLD}")
-    unknown = [member for member in content if member not in MEMBERS]
+    members = _READING_MEMBERS if "reading" in content else _BODY_MEMBERS
+    unknown = [member for member in content if member not in members]
     if "format" not in content and unknown:
         raise InvalidInput(f"unknown member {unknown[0][:100]!r}: {_TOLD}")
     return dict(content)

@@ -8,13 +8,15 @@ from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import Response
 
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
-from app.api.deps import BodyDep, ServicesDep
+from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.fields import Body, Name
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.schemas import PatchBody, one_given
-from app.api.work import ANALYSIS, ENCODING
+from app.api.work import ANALYSIS, ENCODING, Slots, Work
+from app.features.robots.reading_view import RobotReadingView, body_view, reading_view
+from app.features.robots.readings import Readings
 from app.features.robots.response_models import (
     StoredRobotsView,
     StoredRobotView,
@@ -22,12 +24,20 @@ from app.features.robots.response_models import (
     robot_view,
     whole_view,
 )
-from app.features.robots.robot_import import check_stands, correct_robot, import_robot
+from app.features.robots.robot_import import (
+    check_stands,
+    correct_robot,
+    import_robot,
+    is_model_file,
+    read_body,
+    stored_file,
+)
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import AnyGait
+from hexapods.domain.records import from_json
 from hexapods.domain.robot import AnyRobot
-from hexapods.imports.choices import Choices
+from hexapods.imports.choices import AS_FOUND, Choices
 
 FILE_TYPES = ("application/xml", "application/zip", "application/octet-stream")
 router = api_router(prefix="/robots", tags=["robots"])
@@ -51,6 +61,14 @@ class RobotBody(Body):
     name: Name | None = None
 
 
+class ReadRobotBody(Body):
+    """A robot that was read from a file, by the id of the reading."""
+
+    reading: Annotated[str, Field(max_length=64)]
+    choices: Choices = AS_FOUND
+    name: Name | None = None
+
+
 class RobotChangeBody(PatchBody):
     """Changes of the name, visibility, gait or import choices of a stored robot."""
 
@@ -67,6 +85,82 @@ class RobotChangeBody(PatchBody):
         return {name: value for name, value in values.items() if value is not None}
 
 
+READING = Work(name="reading", spectators=Slots(1, 1), operators=Slots(2, 2))
+"""Robots' files that are read before they are stored, again after each correction."""
+
+
+class ReadingBody(Body):
+    """A body that is to be looked at as a robot's file is."""
+
+    robot: AnyRobot
+    gait: AnyGait | None = None
+
+
+class ChoicesBody(Body):
+    """Decisions of a person about a file."""
+
+    choices: Choices = AS_FOUND
+
+
+@router.post(
+    "/readings",
+    summary="Look at a robot before it is stored",
+    openapi_extra={
+        "requestBody": {
+            "content": {
+                "application/json": {"schema": ReadingBody.model_json_schema()},
+                **{kind: {"schema": BINARY} for kind in FILE_TYPES},
+            },
+            "required": True,
+        }
+    },
+)
+@policy(access=OPERATOR, work=READING, takes_file=True)
+def read_file(
+    services: ServicesDep,
+    body: BodyDep,
+    file: Annotated[Name | None, Query(description="name of the file")] = None,
+) -> RecordResponse[RobotReadingView]:
+    """Read a robot's file, or a body, and return what is in it, with a picture; store nothing.
+
+    The file is kept for a while under the `id` of the answer: it is read again as a person decides
+    by `POST /robots/readings/{reading_id}`, and stored by `POST /robots` with `{"reading": id}`.
+    """
+    if is_model_file(body):
+        return _reading_of(services, services.of(Readings).keep(body, file or None), AS_FOUND)
+    robot, gait = read_body(body)
+    return RecordResponse(body_view(robot, gait))
+
+
+@router.post("/readings/{reading_id}", summary="Read a robot's file as a person decides")
+@policy(access=OPERATOR, work=READING)
+def read_again(
+    services: ServicesDep,
+    reading_id: Annotated[str, Path(max_length=64, description="id of a reading")],
+    body: ChoicesBody,
+) -> RecordResponse[RobotReadingView]:
+    """Read a file again that was read lately. After a while it is forgotten, and sent again."""
+    return _reading_of(services, reading_id, body.choices)
+
+
+@router.post("/{robot_id:robot}/reading", summary="Look at the file of a stored robot")
+@policy(access=OPERATOR, work=READING)
+def read_stored(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[RobotReadingView]:
+    """Read the file of a stored robot by its choices, as `POST /robots/readings` does."""
+    stored, upload = stored_file(services.store, robot_id)
+    choices = AS_FOUND if stored.choices is None else from_json(Choices, stored.choices)
+    return _reading_of(services, services.of(Readings).keep(upload, stored.file), choices)
+
+
+def _reading_of(
+    services: Services, reading_id: str, choices: Choices
+) -> RecordResponse[RobotReadingView]:
+    readings = services.of(Readings)
+    name = readings.file(reading_id).name
+    view = reading_view(readings.read(reading_id, choices), choices, reading_id, name)
+    return RecordResponse(view)
+
+
 @router.post(
     "",
     status_code=201,
@@ -75,7 +169,14 @@ class RobotChangeBody(PatchBody):
     openapi_extra={
         "requestBody": {
             "content": {
-                "application/json": {"schema": RobotBody.model_json_schema()},
+                "application/json": {
+                    "schema": {
+                        "anyOf": [
+                            RobotBody.model_json_schema(),
+                            ReadRobotBody.model_json_schema(),
+                        ]
+                    }
+                },
                 **{kind: {"schema": BINARY} for kind in FILE_TYPES},
             },
             "required": True,
@@ -89,13 +190,15 @@ def store_robot(
     name: Annotated[Name | None, Query()] = None,
     file: Annotated[Name | None, Query(description="name of the file")] = None,
 ) -> RecordResponse[StoredRobotView]:
-    """Store a body, `{"robot": …}`, the document of a robot, or a robot's file.
+    """Store a body, `{"robot": …}`, a robot that was read, `{"reading": …}`, a document, or a file.
 
     A file is MJCF or URDF, alone or in a zip with its meshes. The answer tells what was guessed
     and repaired; `PATCH /robots/{id}` corrects it. The id is that of its content: the same robot is
     stored once, with the name that it was given first, and answered with 200.
     """
-    stored, is_new = import_robot(services.store, body, name, file or None)
+    stored, is_new = import_robot(
+        services.store, body, name, file or None, readings=services.of(Readings)
+    )
     services.publish_robots()
     location = {"Location": f"/api/v1/robots/{stored.id}"}
     return RecordResponse(robot_view(stored), 201 if is_new else 200, location)
