@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, NoReturn, TypedDict, TypeVar
 
 import numpy as np
@@ -24,7 +25,7 @@ from hexapods.domain.text import MAX_NAME, visible
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
 from hexapods.imports.child import read_robot_file
-from hexapods.imports.upload import MAX_UPLOAD_BYTES
+from hexapods.imports.folder import read_robot_path
 from hexapods.runs.config import SimulatorName, WalkingProblem
 from hexapods.runs.recommendation import recommend
 
@@ -175,13 +176,13 @@ def check_savable(config: C) -> C:
 
 
 def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
-    """Return the robot of a file: MJCF or URDF, alone or in a zip, or a document (`.json`).
+    """Return the robot of a file: MJCF or URDF, alone or in a folder or a zip, or a document.
 
-    A document is what `hexapods robots export` writes. From then on `{"id": …}` is this robot too,
-    also in tables and races that were made with it.
+    A document (`.json`) is what `hexapods robots export` writes. From then on `{"id": …}` is this
+    robot too, also in tables and races that were made with it.
 
     Args:
-        file: its path.
+        file: path of the file or folder.
         name: the robot's name, of at most 100 characters; by default that of the file, as much of
             it as a name may have.
 
@@ -193,14 +194,11 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
     if name is not None and len(name) > MAX_NAME:
         raise InvalidInput(f"a robot's name is a text of at most {MAX_NAME} characters")
     path = path_of(file, "a robot's file")
-    try:
-        with path.open("rb") as opened:
-            data = opened.read(MAX_UPLOAD_BYTES + 1)
-    except OSError as error:
-        raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
+    data, file_name = read_robot_path(path)
+    stem = Path(file_name).stem
     if path.suffix.lower() != ".json":
-        data = document_of(model_robot(read_robot_file(data, path.name).model, path.stem))
-    return read_document(data, name or path.stem[:MAX_NAME])
+        data = document_of(model_robot(read_robot_file(data, file_name).model, stem))
+    return read_document(data, name or stem[:MAX_NAME])
 
 
 def recommended_agent(

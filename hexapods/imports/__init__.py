@@ -1,7 +1,8 @@
 """Robots from files of strangers: MJCF or URDF, alone or in a zip with meshes.
 
 `child.read_robot_file` is what the rest of the product calls: it reads a file in a child process
-with limits (docs/decisions/0011). There `reading` goes through the steps:
+with limits (docs/decisions/0011). `folder` packs a folder or a repository into such a file. In the
+child `reading` goes through the steps:
 
 - `upload` unpacks; `xml` reads the document within bounds; `mjcf` and `urdf` keep of it what
   describes a body; `mesh_files`, `collada` and `decimation` read and simplify meshes.

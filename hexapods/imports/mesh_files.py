@@ -15,7 +15,7 @@ from hexapods.domain.types import FloatArray
 from hexapods.imports.collada import read_collada
 from hexapods.imports.decimation import cluster
 from hexapods.imports.notes import Notes, listed, quoted
-from hexapods.imports.upload import MAX_MESH_BYTES, Upload
+from hexapods.imports.upload import MAX_MESH_BYTES, Upload, last_part
 
 MAX_MESHES = 300
 MAX_ALL_BYTES = 96 << 20
@@ -57,11 +57,11 @@ class MeshFiles:
             None if it is missing or of a format that cannot be read, which `tell` tells.
 
         Raises:
-            DamagedFile: if it leads out of the zip, is damaged, or they are too many or too large.
+            DamagedFile: if it is damaged, or they are too many or too large.
         """
         path = self._upload.find(wanted, self._document)
         if path is None:
-            self._missing.append(posixpath.basename(wanted))
+            self._missing.append(last_part(wanted))
             return None
         if (path, scale) not in self._names:
             self._names[path, scale] = self._take(path)

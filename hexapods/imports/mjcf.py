@@ -10,6 +10,7 @@ import posixpath
 from hexapods.domain.errors import DamagedFile
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.notes import Notes, quoted
+from hexapods.imports.upload import last_part
 from hexapods.imports.xml import Element
 
 MAX_BODIES, MAX_JOINTS, MAX_GEOMS = 300, 300, 2000
@@ -187,9 +188,9 @@ def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles)
         for mesh in asset:
             wanted = mesh.attributes.get("file")
             if wanted is not None:
-                ending = posixpath.splitext(posixpath.basename(wanted.replace("\\", "/")))[0]
-                mesh.attributes.setdefault("name", ending)
-                path = posixpath.basename(wanted) if strips else wanted
+                stem = posixpath.splitext(last_part(wanted))[0]
+                mesh.attributes.setdefault("name", stem)
+                path = last_part(wanted) if strips else wanted
                 name = meshes.add(posixpath.join(folder, path))
                 if name is None:
                     lost.add(mesh.attributes["name"])

@@ -1,6 +1,7 @@
 """Reads a robot from a file: the steps in a row, as they run in the child process."""
 
 import posixpath
+import re
 from collections.abc import Sequence
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
@@ -13,13 +14,14 @@ from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import clean_mjcf
 from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.sketch import sketch_robot
-from hexapods.imports.upload import MAX_DOCUMENT_BYTES, Upload
+from hexapods.imports.upload import MAX_DOCUMENT_BYTES, Upload, last_part
 from hexapods.imports.urdf import check_expanded, clean_urdf
 from hexapods.imports.xml import Element, read_xml, write_xml
 
 _MAX_DOCUMENTS = 60
 _MAX_DOCUMENTS_BYTES = 16 << 20
 _ROOTS = ("mujoco", "robot")
+_HOME_FOLDER = re.compile(r"(?:[a-zA-Z]:)?[/\\]+(?:home|users)[/\\]+[^/\\]*[/\\]*", re.IGNORECASE)
 _NO_NAMES = ("mujoco model", "robot", "scene")
 
 
@@ -31,6 +33,11 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
     """
     notes = Notes()
     upload = Upload(data, file_name)
+    if upload.outside:
+        notes.repair(
+            "file",
+            f"left out what has a path that leads out of the zip: {listed(upload.outside)}",
+        )
     path, root = _document(upload, choices, notes)
     meshes = MeshFiles(upload, path, notes)
     if root.tag == "mujoco":
@@ -51,9 +58,13 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
 
 
 def _name(named: str, path: str) -> str:
-    """Return the name that a file gives its robot, or its own without ending."""
+    """Return the name that a file gives its robot, or its own without ending.
+
+    Of a path it is the last part; the name of a person's home folder is none.
+    """
     stem = posixpath.splitext(posixpath.basename(path))[0]
-    for text in (named, stem):
+    title = "" if _HOME_FOLDER.fullmatch(named.strip()) else last_part(named)
+    for text in (title, stem):
         shown = " ".join(visible(text).split())[:MAX_NAME].strip()
         if shown and shown.lower() not in _NO_NAMES:
             return shown

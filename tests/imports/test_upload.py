@@ -8,7 +8,7 @@ import pytest
 
 from hexapods.domain.errors import DamagedFile
 from hexapods.imports.upload import MAX_MEMBERS, MAX_UNPACKED_BYTES, Upload
-from tests.imports.robots import zipped
+from tests.imports.robots import dog, read, zipped
 
 
 def with_mode(name: str, mode: int) -> bytes:
@@ -38,14 +38,13 @@ def encrypted() -> bytes:
     ("data", "said"),
     [
         (b"", "the file is empty"),
-        (zipped({"../robot.xml": ""}), "whose path leads out of it"),
-        (zipped({"/robot.xml": ""}), "whose path leads out of it"),
-        (zipped({"C:\\robot.xml": ""}), "whose path leads out of it"),
-        (with_mode("robot.xml", stat.S_IFLNK | 0o777), "a link or no plain file"),
-        (with_mode("robot.xml", stat.S_IFIFO | 0o777), "a link or no plain file"),
         (claiming(MAX_UNPACKED_BYTES + 1), "would unpack to"),
         (encrypted(), "is encrypted"),
-        (zipped({f"{number}.stl": "" for number in range(MAX_MEMBERS + 1)}), "2,001 members"),
+        (
+            zipped({f"{number}.stl": "" for number in range(MAX_MEMBERS + 1)}),
+            "2,001 documents and meshes",
+        ),
+        (zipped({f"{number}.txt": "" for number in range(10_001)}), "10,001 members"),
         (zipped({"robot.xml": ""})[:-30], "has no directory"),
         (b"PK\3\4", "has no directory"),
     ],
@@ -55,6 +54,38 @@ def encrypted() -> bytes:
 def test_hostile_zips_are_refused(data: bytes, said: str) -> None:
     with pytest.raises(DamagedFile, match=re.escape(said)):
         Upload(data, "robot.zip")
+
+
+@pytest.mark.parametrize("path", ["../robot.xml", "/robot.xml", "C:\\robot.xml", "a/../../b.xml"])
+def test_a_member_whose_path_leads_out_is_left_out(path: str) -> None:
+    upload = Upload(zipped({path: "", "robot.xml": ""}), "robot.zip")
+
+    assert upload.documents == ["robot.xml"]
+    assert upload.outside == [path.replace("\\", "/")]
+    robot = read(zipped({path: "", "robot.xml": dog()}))
+    assert any("leads out of the zip" in sentence for sentence in robot.repairs)
+
+
+@pytest.mark.parametrize("mode", [stat.S_IFLNK | 0o777, stat.S_IFIFO | 0o777])
+def test_links_and_devices_are_no_files(mode: int) -> None:
+    upload = Upload(with_mode("hip.stl", mode), "robot.zip")
+
+    assert upload.paths == []
+    assert upload.find("hip.stl", "robot.xml") is None
+
+
+def test_a_link_to_a_file_in_the_zip_is_followed() -> None:
+    buffer = io.BytesIO(zipped({"a/hip.stl": "mesh"}))
+    with zipfile.ZipFile(buffer, "a") as archive:
+        for name, target in {"b/hip.stl": "../a/hip.stl", "b/knee.stl": "../../knee.stl"}.items():
+            link = zipfile.ZipInfo(name)
+            link.external_attr = (stat.S_IFLNK | 0o777) << 16
+            archive.writestr(link, target)
+
+    upload = Upload(buffer.getvalue(), "robot.zip")
+
+    assert upload.find("package://x/b/hip.stl", "robot.xml") == "a/hip.stl"
+    assert upload.find("knee.stl", "robot.xml") is None
 
 
 def test_members_with_one_path_are_refused() -> None:
@@ -77,7 +108,15 @@ def test_a_member_of_another_size_than_claimed_is_refused(size: int) -> None:
 
 @pytest.fixture
 def files() -> Upload:
-    names = ["pkg/urdf/a.urdf", "pkg/meshes/hip.stl", "meshes/hip.stl", "pkg/meshes/left/hip.stl"]
+    names = [
+        "pkg/urdf/a.urdf",
+        "pkg/meshes/hip.stl",
+        "meshes/hip.stl",
+        "pkg/meshes/left/hip.stl",
+        "pkg/meshes/my hip.stl",
+        "pkg/meshes/a b.stl",
+        "pkg/meshes/a%20b.stl",
+    ]
     return Upload(zipped(dict.fromkeys(names, "")), "robot.zip")
 
 
@@ -91,6 +130,16 @@ def files() -> Upload:
         ("hip.stl", "meshes/hip.stl"),
         ("..\\meshes\\hip.stl", "pkg/meshes/hip.stl"),
         ("knee.stl", None),
+        ("/home/ada/pkg/meshes/left/hip.stl", "pkg/meshes/left/hip.stl"),
+        ("C:\\Users\\ada\\pkg\\meshes\\hip.stl", "pkg/meshes/hip.stl"),
+        ("file:///opt/pkg/meshes/hip.stl", "pkg/meshes/hip.stl"),
+        ("https://example.org/pkg/meshes/hip.stl", "pkg/meshes/hip.stl"),
+        ("../../../meshes/left/hip.stl", "pkg/meshes/left/hip.stl"),
+        ("package://pkg/meshes/HIP.STL", "pkg/meshes/hip.stl"),
+        ("Meshes/Left/Hip.Stl", "pkg/meshes/left/hip.stl"),
+        ("meshes/my%20hip.stl", "pkg/meshes/my hip.stl"),
+        ("meshes/My%20Hip.stl", "pkg/meshes/my hip.stl"),
+        ("meshes/a%20b.stl", "pkg/meshes/a%20b.stl"),
     ],
 )
 def test_a_mesh_is_found_by_the_most_of_its_path(
@@ -101,17 +150,31 @@ def test_a_mesh_is_found_by_the_most_of_its_path(
 
 @pytest.mark.parametrize(
     "wanted",
-    [
-        "/etc/passwd",
-        "../../../etc/passwd",
-        "C:/hip.stl",
-        "package://../../etc/passwd",
-        "http://example.org/hip.stl",
-    ],
+    ["/etc/passwd", "../../../etc/passwd", "C:/", "package://../../etc/passwd", "..", "", "a//"],
 )
-def test_no_mesh_is_outside_the_zip(files: Upload, wanted: str) -> None:
-    with pytest.raises(DamagedFile, match=r"leads out of the zip|no path in the zip"):
-        files.find(wanted, "pkg/urdf/a.urdf")
+def test_what_is_not_in_the_zip_is_not_found(files: Upload, wanted: str) -> None:
+    assert files.find(wanted, "pkg/urdf/a.urdf") is None
+
+
+def test_a_package_is_the_folder_of_its_package_xml() -> None:
+    upload = Upload(
+        zipped(
+            {
+                "repo/dog-main/package.xml": "<package><name>dog</name></package>",
+                "repo/dog-main/meshes/hip.stl": "",
+                "cat/package.xml": "<package><name> cat </name></package>",
+                "cat/meshes/hip.stl": "",
+                "deep/er/tools/x.py": "",
+            }
+        ),
+        "robot.zip",
+    )
+
+    assert upload.package_folder("dog") == "repo/dog-main"
+    assert upload.package_folder("tools") == "deep/er/tools"
+    assert upload.package_folder("mouse") == "mouse"
+    assert upload.find("package://dog/meshes/hip.stl", "a.urdf") == "repo/dog-main/meshes/hip.stl"
+    assert upload.find("package://cat/meshes/hip.stl", "a.urdf") == "cat/meshes/hip.stl"
 
 
 def test_a_single_document_has_no_other_files() -> None:
@@ -126,9 +189,8 @@ def test_a_single_document_has_no_other_files() -> None:
     [
         (
             {"readme.txt": ""},
-            "has no MJCF or URDF document (.xml, .urdf, .mjcf); it has: readme.txt",
+            "has no MJCF or URDF document (.urdf, .xml, .mjcf, .xacro); it has: readme.txt",
         ),
-        ({"robot.xacro": ""}, "xacro files, which are not expanded here"),
         ({}, "it has: nothing"),
     ],
 )

@@ -227,15 +227,6 @@ HOSTILE: dict[str, Callable[[], bytes]] = {
         b'<joint name="2" type="fixed"><parent link="b"/><child link="a"/></joint></robot>'
     ),
     "unexpanded xacro": lambda: b'<robot><link name="${base}"/></robot>',
-    "a mesh from the system": lambda: zipped(
-        {"bug.urdf": bug(torso=shape("/etc/passwd")), "a.stl": ""}
-    ),
-    "a mesh from above": lambda: zipped(
-        {"bug.urdf": bug(torso=shape("../../../etc/passwd")), "a.stl": ""}
-    ),
-    "a mesh from the network": lambda: zipped(
-        {"bug.urdf": bug(torso=shape("http://127.0.0.1:9/a.stl")), "a.stl": ""}
-    ),
     "a mesh of too many triangles": lambda: false_count(2**32 - 1),
     "a mesh of other triangles": lambda: false_count(1000),
     "a mesh that is not finite": not_finite,
@@ -288,6 +279,17 @@ def test_what_is_no_body_takes_no_memory(section: str) -> None:
     result = outcome(with_section(section))
 
     assert isinstance(result, ImportedRobot)
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/etc/passwd", "../../../etc/passwd", "http://127.0.0.1:9/passwd", "file:///etc/passwd"],
+)
+def test_a_mesh_outside_of_the_zip_is_missing(path: str) -> None:
+    result = outcome(zipped({"bug.urdf": bug(torso=shape(path)), "a.stl": ""}), "robot.zip")
+
+    assert isinstance(result, ImportedRobot)
+    assert any("passwd" in repair and "missing" in repair for repair in result.repairs)
 
 
 LIBRARY = ("-c", "import hexapods as hx; hx.load_robot('bug.zip')")

@@ -25,6 +25,7 @@ from hexapods.domain.text import MAX_NAME, check_name, visible
 from hexapods.imports.child import NotRead, read_robot_file
 from hexapods.imports.choices import AS_FOUND, Choices
 from hexapods.imports.imported import ImportedRobot
+from hexapods.imports.upload import last_part
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import preview
 
@@ -206,7 +207,7 @@ def _of_file(
         guesses=imported.guesses,
         repairs=imported.repairs,
         choices=None if choices == AS_FOUND else to_json(choices),
-        file=visible(file or f"{imported.name}.{imported.file_format}")[:MAX_NAME],
+        file=visible(last_part(file or f"{imported.name}.{imported.file_format}"))[:MAX_NAME],
     )
     return about, document
 

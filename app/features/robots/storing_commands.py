@@ -11,19 +11,16 @@ from urllib.parse import urlencode
 
 from cyclopts import Parameter
 
-from app.cli.files import read_bounded
 from app.cli.options import AsJson, Data
 from app.cli.server_client import call_server
 from app.cli.stored_runs import open_for_reading, open_for_writing
 from app.settings import Settings, read_settings
 from hexapods.domain.errors import UnknownName
+from hexapods.imports.folder import read_robot_path
 
 if TYPE_CHECKING:
     from app.storage.database.store import RunStore
     from app.storage.stored_robot import StoredRobot
-
-_MAX_BYTES = 64 << 20
-
 
 Name = Annotated[str, Parameter(name="NAME", help="name or id of a stored robot")]
 
@@ -36,33 +33,41 @@ def import_robot(
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
-    """Store a robot from MJCF or URDF, alone or in a zip, or from a document.
+    """Store a robot from MJCF or URDF, alone or in a folder or zip, or from a document.
 
     `hexapods robots export` writes documents.
 
     Args:
-        file: MJCF, URDF, a zip, a document, or JSON with `robot`
+        file: MJCF, URDF, a folder or zip with one, a document, or JSON with `robot`
         name: its name (default: that of the file)
 
     Raises:
         HexapodError: if it cannot be read or stored.
     """
     settings, path = read_settings(data=data), Path(file)
-    content = read_bounded(file, _MAX_BYTES)
-    name = name or path.stem
+    content, file_name = read_robot_path(path)
+    name = name or _name(path)
 
     def store_it(store: "RunStore") -> "StoredRobot":
         # Imported here, as it loads the jobs.
         from app.features.robots import robot_import  # noqa: PLC0415
 
-        return robot_import.import_robot(store, content, name, path.name)[0]
+        return robot_import.import_robot(store, content, name, file_name)[0]
 
-    query = urlencode({"name": name, "file": path.name})
+    query = urlencode({"name": name, "file": file_name})
     view = _changed(settings, store_it, ("POST", f"api/v1/robots?{query}", content))
     lines = [f"{path} is robot {view['name']} ({view['id']}) here."]
     lines += [f"Guessed: {guess}" for guess in view["guesses"]]
     lines += [f"Repaired: {repair}" for repair in view["repairs"]]
     return _print(view, "\n".join(lines), as_json)
+
+
+def _name(path: Path) -> str | None:
+    """Return the name of a file or folder for its robot; of a person's home folder none."""
+    path = path.resolve()
+    if path == Path.home():
+        return None
+    return path.name if path.is_dir() else path.stem
 
 
 def hide_robot(

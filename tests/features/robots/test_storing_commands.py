@@ -53,6 +53,19 @@ def test_a_robot_is_imported_shown_hidden_renamed_and_deleted(folder: Path) -> N
     assert names(folder, "--hidden") == []
 
 
+def test_a_folder_is_imported_under_its_name(folder: Path) -> None:
+    (folder / "My dog" / "mjcf").mkdir(parents=True)
+    (folder / "My dog" / "mjcf" / "dog.xml").write_text(dog())
+
+    imported = robots_json(folder, "import", "My dog")
+
+    assert (imported["name"], imported["file"]) == ("My dog", "My dog.zip")
+    (folder / "empty").mkdir()
+    data = ("--data", str(folder / "data"))
+    refused = refusal("robots", "import", "empty", *data, folder=folder, run=in_process)
+    assert "it has no document of a robot" in refused
+
+
 def test_invalid_files_names_and_robots_are_refused(folder: Path) -> None:
     def refused(*arguments: str) -> str:
         data = ("--data", str(folder / "data"))
