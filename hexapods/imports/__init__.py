@@ -6,11 +6,12 @@ child `reading` goes through the steps:
 
 - `upload` unpacks; `xml` reads the document within bounds; `mjcf` and `urdf` keep of it what
   describes a body; `mesh_files`, `collada` and `decimation` read and simplify meshes.
-- `compiling` has MuJoCo turn it into numbers; `posed_robot` is the robot with all joints at 0.
+- `compiling` has MuJoCo turn it into numbers, in the `units` of the file; `posed_robot` is the
+  robot with all joints at 0.
 - `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward and numbers
-  the legs; `stance` finds how it stands, by the kinematics of `chain`; `masses` and `servos` fill
-  in what is missing; `shapes` finds what touches the ground, from `surfaces`; `drawing` what is
-  drawn.
+  the legs; `stance` finds how it stands, by the kinematics of `chain`, `heights` how high it could;
+  `masses` and `servos` fill in what is missing; `shapes` finds what touches the ground, from
+  `surfaces`; `drawing` what is drawn.
 - `building` makes a `RobotModel` of all, `sketch` a picture of the bodies in the file, for a person
   who corrects what was guessed. `choices` are decisions of a person, `notes` guesses and
   repairs, `imported` the result.

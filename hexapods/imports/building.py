@@ -22,6 +22,7 @@ from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
 from hexapods.imports.directions import find_forward, find_gait, numbered
 from hexapods.imports.drawing import find_meshes
+from hexapods.imports.heights import body_height_m
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
@@ -36,9 +37,11 @@ from hexapods.imports.servos import (
 from hexapods.imports.shapes import GroundShape, drop_touching, link_shapes, torso_shapes
 from hexapods.imports.skeleton import FoundLeg, find_skeleton
 from hexapods.imports.stance import Angles, RobotWithLegs, find_stance, reaches_grid
+from hexapods.imports.units import apply_choices
 
 _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
+_LEAST_FOOT_M, _MOST_FOOT_M = 0.001, 2.0
 _SAME_PLACE_M = 1e-3
 _PLAIN_WORDS = frozenset({"", "joint", "jnt", "link", "leg", "j", "motor", "servo"})
 _MAX_JOINT_NAME = 24
@@ -66,11 +69,13 @@ def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes
     Raises:
         InvalidInput: if the file is no robot with legs, or a choice is not possible.
     """
+    apply_choices(compiled.model, choices)
     pose = initial_pose(compiled.model)
     skeleton = find_skeleton(compiled, pose, choices, notes)
     posed = PosedRobot(compiled, skeleton, pose)
     names = [_names_of(compiled, leg) for leg in posed.legs]
-    posed.turn(find_forward(posed.mounts()[:, :2], names, choices, notes))
+    up = choices.up or "z"
+    posed.turn(find_forward(posed.mounts()[:, :2], names, up, choices, notes))
     posed.order(numbered(_places(posed)))
     return _Builder(posed, keyframes_of(compiled.model), origin, choices, notes).build()
 
@@ -119,12 +124,12 @@ class _Builder:
     def build(self) -> ImportedRobot:
         self._check_size()
         robot = self._robot_with_legs()
-        home = find_stance(robot, self._choices, self._notes)
+        home, heights = find_stance(robot, self._choices, self._notes)
         reaches = reaches_grid(robot, home)
         self._tell_of_reach(reaches)
         links: dict[int | None, str] = {None: self._name_of_torso()}
         links |= {joint: self._name_of_link(joint) for joint in self._joints}
-        masses = find_masses(self._posed, links, self._ends(), self._notes)
+        masses = find_masses(self._posed, links, self._ends(), self._choices, self._notes)
         mass_kg = ordered_sum(mass.kg for mass in masses.values())
         if not 0.001 <= mass_kg <= 10_000:
             raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
@@ -135,7 +140,6 @@ class _Builder:
         meshes = find_meshes(self._posed, origins, self._notes)
         model = self._model(links, masses, servos, meshes, home)
         gait = find_gait(self._posed.mounts()[:, :2], self._choices, self._notes)
-        foot_heights = [float(self._foot_at(leg, home)[2]) for leg in range(len(home))]
         return ImportedRobot(
             model=model,
             name=self._origin.name,
@@ -152,7 +156,8 @@ class _Builder:
             gait=gait,
             forward_deg=self._posed.turn_deg,
             mass_kg=mass_kg,
-            body_height_m=-float(np.mean(foot_heights)),
+            body_height_m=body_height_m(self._chains, home),
+            body_heights_m=heights and (heights.lowest, heights.highest),
             reaches_grid=reaches,
             notes=self._notes.collected(),
         )
@@ -172,7 +177,16 @@ class _Builder:
                 raise InvalidInput(
                     f"leg {number} (to {quoted(self._posed.legs[number - 1].foot.name)}) is "
                     f"{chain.length_m:.3g} m long; a leg has from {_LEAST_LEG_M:g} to "
-                    f"{_MOST_LEG_M:g} m: is the file in millimetres?"
+                    f"{_MOST_LEG_M:g} m: `scale` reads the file in another unit of length, 0.001 "
+                    "in millimetres"
+                )
+
+        for leg in self._posed.legs:
+            if not _LEAST_FOOT_M <= leg.foot.radius_m <= _MOST_FOOT_M:
+                raise InvalidInput(
+                    f"the foot {quoted(leg.foot.name)} has a radius of {leg.foot.radius_m:.3g} m; "
+                    f"a foot has from {_LEAST_FOOT_M:g} to {_MOST_FOOT_M:g} m: `scale` reads the "
+                    "file in another unit of length"
                 )
 
     def _span(self) -> FloatArray:
@@ -235,10 +249,6 @@ class _Builder:
             for number, joint in enumerate(leg.joints):
                 ends[joint] = np.array(points[number : number + 2])
         return ends
-
-    def _foot_at(self, leg: int, angles: Angles) -> FloatArray:
-        place: FloatArray = self._chains[leg].feet(angles[leg][None])[0]
-        return place
 
     def _model(
         self,

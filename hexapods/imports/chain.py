@@ -59,12 +59,16 @@ class LegChain:
         feet = self.feet(near).reshape(count, 2, joints, 3)
         return np.moveaxis((feet[:, 0] - feet[:, 1]) / (2 * _DIFFERENCE), 1, 2)
 
-    def solve(self, targets: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def solve(
+        self, targets: FloatArray, start: FloatArray, weights: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
         """Find angles within the limits at which the foot is in some places.
 
         Args:
             targets: (k, 3) [m].
             start: angles from which to search, (joints,) [rad].
+            weights: of the coordinates, (3,), where a leg cannot reach a place in all of them; by
+                default they are alike.
 
         Returns:
             angles, (k, joints) [rad], and the distances that are left, (k,) [m]; of a place out of
@@ -78,6 +82,8 @@ class LegChain:
             if round_ and np.abs(off).max() < 1e-9:
                 break
             jacobians = self.jacobians(angles)
+            if weights is not None:
+                off, jacobians = off * weights, jacobians * weights[:, None]
             # Less damping near the end, where it only slows down.
             scale = np.minimum(1, np.linalg.norm(off, axis=1) / (0.1 * self.length_m)) ** 2 + 1e-6
             square = jacobians @ jacobians.transpose(0, 2, 1) + scale[:, None, None] * damping

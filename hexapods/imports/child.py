@@ -24,7 +24,7 @@ from typing import Any
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import message, visible
-from hexapods.imports.choices import AS_FOUND, Choices
+from hexapods.imports.choices import AS_FOUND, Choices, check_choices
 from hexapods.imports.imported import ImportedRobot, RobotReading
 from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.processes import Child, SetUp
@@ -98,6 +98,7 @@ def inspect_robot_file(
         InvalidInput: if the file cannot even be drawn: what is wrong with it, and what is valid.
         NotRead: if no process can be started.
     """
+    check_choices(choices)
     if len(data) > MAX_UPLOAD_BYTES:
         raise DamagedFile(
             f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from hexapods.domain.errors import DamagedFile
 from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.units import rescale, rescale_keyframes
 from hexapods.imports.xml import Document
 
 LEAST_KG, _LEAST_INERTIA = 1e-6, 1e-9
@@ -59,7 +60,11 @@ def silence_mujoco() -> None:
 
 
 def compile_document(
-    document: Document, assets: Mapping[str, bytes], undrawn: Collection[str], notes: Notes
+    document: Document,
+    assets: Mapping[str, bytes],
+    undrawn: Collection[str],
+    notes: Notes,
+    scale: float | None = None,
 ) -> Compiled:
     """Compile a cleaned document.
 
@@ -68,6 +73,7 @@ def compile_document(
         assets: its meshes, by the names that it has for them.
         undrawn: names of bodies of which a mesh is missing.
         notes: gets the repairs.
+        scale: factor of all lengths.
 
     Raises:
         DamagedFile: if MuJoCo refuses it, naming element and line.
@@ -76,6 +82,8 @@ def compile_document(
         spec = mujoco.MjSpec.from_string(document.text, assets=dict(assets))
     except ValueError as error:
         raise _refused(error, document) from error
+    if scale is not None:
+        rescale(spec, scale)
     _mend_inertias(spec, notes)
     _spare_volumes(spec)
     collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
@@ -86,6 +94,8 @@ def compile_document(
         geom.contype = geom.conaffinity = 0
     collides_by_name = {geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)}
     model = _compile(spec, document, notes)
+    if scale is not None:
+        rescale_keyframes(model, scale)
     return Compiled(
         model,
         [collides_by_name[model.geom(geom).name] for geom in range(model.ngeom)],

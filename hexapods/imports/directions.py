@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,10 +10,10 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GaitSpec, resolve
 from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
-from hexapods.imports.choices import Choices
-from hexapods.imports.notes import Notes
+from hexapods.imports.choices import Axis, Choices
+from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.units import horizontal_axes
 
-_AXES = {"x": 0.0, "y": 90.0, "-x": 180.0, "-y": -90.0}
 _SHORT = {
     "front": frozenset(["fl", "fr", "lf", "rf"]),
     "hind": frozenset(["hl", "hr", "lh", "rh", "bl", "br", "lb", "rb", "rl", "rr", "lr"]),
@@ -32,21 +32,27 @@ _NEARLY_DEG = 1.0
 
 
 def find_forward(
-    mounts: FloatArray, names: Sequence[Sequence[str]], choices: Choices, notes: Notes
+    mounts: FloatArray,
+    names: Sequence[Sequence[str]],
+    up: Axis,
+    choices: Choices,
+    notes: Notes,
 ) -> float:
-    """Return the direction in which the robot walks, anticlockwise from x of the file [°].
+    """Return the direction in which the robot walks, as `Choices.forward` has it [°].
 
     Args:
-        mounts: places of the legs' mounts in the frame of the file, (legs, 2).
+        mounts: places of the legs' mounts from above, (legs, 2).
         names: names of the joints and bodies of each leg.
+        up: axis of the file that points up.
         choices: choices of a person.
         notes: collects the guess.
 
     Raises:
         InvalidInput: if the chosen direction is not valid.
     """
+    axes = horizontal_axes(up)
     if choices.forward is not None:
-        return _chosen(choices.forward)
+        return _chosen(choices.forward, axes, up)
     at = {word: _mean(mounts, names, word) for word in _SHORT}
     front, hind, left, right = at["front"], at["hind"], at["left"], at["right"]
     if _contradict(front, hind, left, right):
@@ -61,9 +67,9 @@ def find_forward(
     else:
         ahead, why = np.array([0.0, 1.0]), "since the legs are symmetric to that axis"
     angle = math.degrees(math.atan2(ahead[1], ahead[0]))
-    axis = min(_AXES, key=lambda name: abs(_wrapped(angle - _AXES[name])))
+    axis = min(axes, key=lambda name: abs(_wrapped(angle - axes[name])))
     notes.guess("forward", f"forward is {axis} of the file's frame, {why}")
-    return _AXES[axis]
+    return axes[axis]
 
 
 def _contradict(
@@ -79,19 +85,20 @@ def _contradict(
     return float(ahead[0] * across[1] - ahead[1] * across[0]) <= 0
 
 
-def _chosen(forward: str | float) -> float:
-    if isinstance(forward, str):
-        if forward in _AXES:
-            return _AXES[forward]
-        try:
-            forward = float(forward)
-        except ValueError:
-            forward = math.nan
-    if not math.isfinite(forward) or abs(forward) > 360:
+def _chosen(forward: str | float, axes: Mapping[Axis, float], up: Axis) -> float:
+    for axis, angle in axes.items():
+        if forward == axis:
+            return angle
+    try:
+        angle = float(forward)
+    except ValueError:
+        angle = math.nan
+    if not math.isfinite(angle) or abs(angle) > 360:
         raise InvalidInput(
-            f"forward must be {', '.join(_AXES)} or an angle from x in degrees, -360 to 360"
+            f"forward must be {listed(axes)} or an angle in degrees, -360 to 360, since {up} of "
+            f"the file is up; not {quoted(str(forward))}"
         )
-    return forward
+    return angle
 
 
 def _mean(mounts: FloatArray, names: Sequence[Sequence[str]], word: str) -> FloatArray | None:

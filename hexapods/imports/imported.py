@@ -38,10 +38,11 @@ class ImportedRobot(Record):
         feet: names in the file of all that could be the foot of a leg, fit for `Choices.feet`.
         keyframes: names of the file's keyframes.
         gait: which legs move together.
-        forward_deg: direction in which it walks, anticlockwise from x of its torso's frame in the
-            file.
+        forward_deg: direction in which it walks, as in `Choices.forward`.
         mass_kg: its mass.
         body_height_m: height of the torso's centre above the centres of the feet.
+        body_heights_m: lowest and highest value for `Choices.body_height_m`; null if there is no
+            choice.
         reaches_grid: whether each foot at home reaches the corners of a box around it, which is
             about as large as a foot grid that suits the robot.
         notes: what was guessed and repaired.
@@ -58,6 +59,7 @@ class ImportedRobot(Record):
     forward_deg: float
     mass_kg: float
     body_height_m: float
+    body_heights_m: tuple[float, float] | None
     reaches_grid: bool
     notes: tuple[Note, ...]
 

@@ -8,6 +8,7 @@ import numpy as np
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
+from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import LEAST_KG
 from hexapods.imports.notes import Notes, listed
 from hexapods.imports.posed_robot import PosedRobot
@@ -39,6 +40,7 @@ def find_masses(
     posed: PosedRobot,
     links: Mapping[int | None, str],
     ends: Mapping[int | None, FloatArray],
+    choices: Choices,
     notes: Notes,
 ) -> dict[int | None, Mass]:
     """Return the mass of each link.
@@ -47,6 +49,7 @@ def find_masses(
         posed: the robot.
         links: name of each link, by the joint that moves it; None for the torso.
         ends: two points of each link, (2, 3), between which one without shapes lies.
+        choices: what a person decided.
         notes: gets the guesses.
 
     Raises:
@@ -78,7 +81,16 @@ def find_masses(
         notes.guess(
             "masses", f"the file gives no mass for {names}: guessed by its shapes or by the others"
         )
-    return masses
+    return masses if choices.mass_kg is None else _weighing(masses, choices.mass_kg)
+
+
+def _weighing(masses: Mapping[int | None, Mass], total_kg: float) -> dict[int | None, Mass]:
+    """Return masses in the same ratios with another sum."""
+    factor = total_kg / ordered_sum(mass.kg for mass in masses.values())
+    return {
+        joint: Mass(max(factor * mass.kg, LEAST_KG), mass.center_m, factor * mass.inertia)
+        for joint, mass in masses.items()
+    }
 
 
 def _together(posed: PosedRobot, bodies: Sequence[int]) -> Mass:

@@ -46,7 +46,7 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
         clean_urdf(root, meshes)
     meshes.tell()
     document = write_xml(root)
-    compiled = compile_document(document, meshes.assets, meshes.undrawn, notes)
+    compiled = compile_document(document, meshes.assets, meshes.undrawn, notes, choices.scale)
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
     origin = FileOrigin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]

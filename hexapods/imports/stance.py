@@ -6,6 +6,7 @@ corners of a box around it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
 from hexapods.imports.chain import PRECISION, LegChain
 from hexapods.imports.choices import Choices
+from hexapods.imports.heights import Heights, at_height, possible_heights
 from hexapods.imports.notes import Notes, listed, quoted
 
 _REACH_SHARE, _LIFT_SHARE = 0.08, 0.12
@@ -74,16 +76,34 @@ class RobotWithLegs:
         return np.array(feet) - self.radii_m
 
 
-def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Angles:
-    """Return the joint angles of the robot's stance, leg by leg [rad].
+class Stance(NamedTuple):
+    """A stance.
+
+    Attributes:
+        angles: of each leg's joints [rad].
+        heights: at which the robot could stand with its feet in the same places.
+    """
+
+    angles: Angles
+    heights: Heights | None
+
+
+def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Stance:
+    """Return the robot's stance.
 
     Raises:
-        InvalidInput: if chosen angles, or a chosen keyframe, are not possible.
+        InvalidInput: if chosen angles, a chosen height or keyframe are not possible.
     """
     angles = _level(robot, _stance_of_file(robot, choices, notes), notes)
+    least_m = (
+        _CLEARANCE_SHARE * robot.length_m - robot.torso_bottom_m - float(np.mean(robot.radii_m))
+    )
+    heights = possible_heights(robot.chains, angles, least_m)
+    if choices.body_height_m is not None:
+        angles = at_height(robot.chains, angles, heights, choices.body_height_m)
     if choices.home_rad:
         angles = _changed(robot, angles, choices.home_rad)
-    return angles
+    return Stance(angles, heights)
 
 
 def reaches_grid(robot: RobotWithLegs, angles: Angles) -> bool:

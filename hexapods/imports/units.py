@@ -1,0 +1,107 @@
+"""Units and axes of a file where they are not metres, radians, and z up."""
+
+from typing import get_args
+
+import mujoco
+import numpy as np
+
+from hexapods.domain.types import FloatArray
+from hexapods.imports.choices import Axis, Choices
+
+_UP: dict[Axis, FloatArray] = {
+    "z": np.eye(3),
+    "y": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+    "-y": np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]),
+    "x": np.array([[0, 1.0, 0], [0, 0, 1], [1, 0, 0]]),
+    "-x": np.array([[0, 1.0, 0], [0, 0, -1], [-1, 0, 0]]),
+    "-z": np.diag([1.0, -1, -1]),
+}
+"""The rotation of the file that turns each of its axes up, (3, 3)."""
+_DIRECTIONS: dict[Axis, FloatArray] = {
+    axis: (-1.0 if axis.startswith("-") else 1.0) * np.eye(3)["xyz".index(axis[-1])]
+    for axis in get_args(Axis)
+}
+_HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+_FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+
+
+def horizontal_axes(up: Axis | None) -> dict[Axis, float]:
+    """Return the axes of the file that are horizontal, with their directions [°].
+
+    Directions are anticlockwise from x seen from above; from y where x or -x is up.
+    """
+    angles: dict[Axis, float] = {}
+    for axis in sorted(_DIRECTIONS, key=lambda axis: axis.startswith("-")):
+        x, y, z = _UP[up or "z"] @ _DIRECTIONS[axis] + 0.0
+        if abs(z) < 0.5:
+            angles[axis] = float(np.degrees(np.arctan2(y, x)))
+    return angles
+
+
+def rescale(spec: mujoco.MjSpec, scale: float) -> None:
+    """Multiply all lengths of a model by a factor.
+
+    Masses that are given stay; those that the compiler computes by density follow the lengths, and
+    inertias the square of them.
+    """
+    for body in spec.bodies[1:]:
+        body.pos = body.pos * scale
+        if body.explicitinertial:
+            body.ipos = body.ipos * scale
+            body.inertia, body.fullinertia = body.inertia * scale**2, body.fullinertia * scale**2
+    for frame in spec.frames:
+        frame.pos = frame.pos * scale
+    for shape in (*spec.geoms, *spec.sites):
+        shape.pos, shape.size = shape.pos * scale, shape.size * scale
+        shape.fromto = shape.fromto * scale
+    for mesh in spec.meshes:
+        mesh.scale = mesh.scale * scale
+    for joint in spec.joints:
+        joint.pos = joint.pos * scale
+        if int(joint.type) == _SLIDE:
+            joint.range, joint.ref = joint.range * scale, joint.ref * scale
+
+
+def rescale_keyframes(model: mujoco.MjModel, scale: float) -> None:
+    """Multiply the positions of slides and free joints in keyframes by a factor."""
+    for kind, start in zip(model.jnt_type.tolist(), model.jnt_qposadr.tolist(), strict=True):
+        if kind in (_SLIDE, _FREE):
+            model.key_qpos[:, start : start + (1 if kind == _SLIDE else 3)] *= scale
+
+
+def turn_upright(model: mujoco.MjModel, up: Axis, before: Axis = "z") -> None:
+    """Turn all that is in the world so that an axis of the file points up.
+
+    Args:
+        model: the model, which is changed.
+        up: the axis.
+        before: the axis that was turned up before.
+    """
+    matrix = _UP[up] @ _UP[before].T
+    turn, quaternion = np.empty(4), np.empty(4)
+    mujoco.mju_mat2Quat(turn, np.ascontiguousarray(matrix).ravel())
+
+    def turn_pose(place: FloatArray, rotation: FloatArray) -> None:
+        place[:] = matrix @ place
+        mujoco.mju_mulQuat(quaternion, turn, np.array(rotation))
+        rotation[:] = quaternion
+
+    for body in np.flatnonzero(model.body_parentid == 0)[1:].tolist():
+        turn_pose(model.body_pos[body], model.body_quat[body])
+    for joint in np.flatnonzero(model.jnt_type == _FREE).tolist():
+        start = int(model.jnt_qposadr[joint])
+        turn_pose(model.qpos0[start : start + 3], model.qpos0[start + 3 : start + 7])
+
+
+def apply_choices(model: mujoco.MjModel, choices: Choices) -> None:
+    """Turn a model upright and read its limits in the unit that a person has chosen."""
+    if choices.up is not None:
+        turn_upright(model, choices.up)
+    if choices.angle_unit == "deg":
+        limits_in_degrees(model)
+
+
+def limits_in_degrees(model: mujoco.MjModel) -> None:
+    """Read the limits of hinges, which were taken for radians, in degrees."""
+    hinges = model.jnt_type == _HINGE
+    model.jnt_range[hinges] = np.radians(model.jnt_range[hinges])
