@@ -8,6 +8,11 @@ import mujoco
 import numpy as np
 
 from hexapods.domain.errors import DamagedFile
+from hexapods.imports.incomplete_shapes import (
+    drop_shapes_of_missing_meshes,
+    drop_sizeless_shapes,
+    tell_of_bare_ends,
+)
 from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.units import rescale, rescale_keyframes
 from hexapods.imports.xml import Document
@@ -85,10 +90,13 @@ def compile_document(
     if scale is not None:
         rescale(spec, scale)
     _mend_inertias(spec, notes)
-    _spare_volumes(spec)
-    collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
     named = frozenset(geom.name for geom in spec.geoms if geom.name)
     _name_all(spec)
+    undrawn = {*undrawn, *drop_shapes_of_missing_meshes(spec)}
+    drop_sizeless_shapes(spec, notes)
+    tell_of_bare_ends(spec, undrawn, notes)
+    _spare_volumes(spec)
+    collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
     for geom in spec.geoms:
         # Then the convex hulls of meshes are not computed.
         geom.contype = geom.conaffinity = 0

@@ -16,6 +16,11 @@ from hexapods.imports.posed_robot import PosedRobot
 _DENSITY = 500.0
 """Density of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""
 _NO_MASS_KG = 1e-5
+_PLACEHOLDER_KG, _PLACEHOLDER_SHARE = 0.01, 0.02
+"""Placeholders weigh less, and less than this share of what their shapes would."""
+_ROD_WIDTH = 0.1
+"""Width of a rod of a link without shapes, as a share of its length."""
+_SAME = 1e-3
 _SHARE = 0.05
 """Share of the robot's mass that a link without mass and shapes gets."""
 _LEAST_INERTIA = 1e-9
@@ -58,14 +63,23 @@ def find_masses(
     masses = {joint: _together(posed, posed.bodies_of(joint)) for joint in links}
     # A body with two joints is two links, the first of which has nothing.
     between = {joint for joint in links if joint is not None and not posed.bodies_of(joint)}
+    weighed = [joint for joint in links if joint not in between]
+    by_shapes = {
+        joint: _of_shapes(posed, posed.geoms_of(posed.bodies_of(joint)))
+        for joint in weighed
+        if masses[joint].kg < _PLACEHOLDER_KG
+    }
+    expected_kg = {
+        joint: mass.kg if mass is not None else _rod_kg(ends[joint])
+        for joint, mass in by_shapes.items()
+    }
+    placeholders = _placeholders({joint: masses[joint].kg for joint in by_shapes}, expected_kg)
     unknown = [
-        joint for joint, mass in masses.items() if mass.kg < _NO_MASS_KG and joint not in between
+        joint for joint in weighed if masses[joint].kg < _NO_MASS_KG or joint in placeholders
     ]
-    by_shapes = {}
-    for joint in unknown:
-        by_shapes[joint] = _of_shapes(posed, posed.geoms_of(posed.bodies_of(joint)))
     known_kg = ordered_sum(mass.kg for joint, mass in masses.items() if joint not in unknown)
-    shaped_kg = ordered_sum(mass.kg for mass in by_shapes.values() if mass is not None)
+    shaped = [by_shapes[joint] for joint in unknown]
+    shaped_kg = ordered_sum(mass.kg for mass in shaped if mass is not None)
     if known_kg < _NO_MASS_KG and shaped_kg <= 0:
         raise InvalidInput(
             "no link has a mass, nor a shape by which to guess one: give the links <inertial>"
@@ -76,11 +90,11 @@ def find_masses(
         masses[joint] = of_shapes or _ball(kg, ends[joint].mean(axis=0), ends[joint])
     for joint in between:
         masses[joint] = Mass(LEAST_KG, ends[joint][0], np.eye(3) * _LEAST_INERTIA)
-    if unknown:
-        names = listed(links[joint] for joint in unknown)
-        notes.guess(
-            "masses", f"the file gives no mass for {names}: guessed by its shapes or by the others"
-        )
+    _tell(
+        [links[joint] for joint in unknown if joint not in placeholders],
+        [links[joint] for joint in placeholders],
+        notes,
+    )
     return masses if choices.mass_kg is None else _weighing(masses, choices.mass_kg)
 
 
@@ -91,6 +105,48 @@ def _weighing(masses: Mapping[int | None, Mass], total_kg: float) -> dict[int | 
         joint: Mass(max(factor * mass.kg, LEAST_KG), mass.center_m, factor * mass.inertia)
         for joint, mass in masses.items()
     }
+
+
+def _placeholders(
+    kg: Mapping[int | None, float], expected_kg: Mapping[int | None, float]
+) -> list[int | None]:
+    """Return the links whose masses only stand in the file because programs want some.
+
+    Such a mass is far below what the link would weigh, and the same for several links; where light
+    links all differ, they are weighed in another unit.
+    """
+    light = [
+        joint
+        for joint, mass_kg in kg.items()
+        if _NO_MASS_KG <= mass_kg < _PLACEHOLDER_SHARE * expected_kg[joint]
+    ]
+    values = sorted(kg[joint] for joint in light)
+    distinct = sum(
+        below * (1 + _SAME) < above for below, above in zip([0.0, *values], values, strict=False)
+    )
+    return light if distinct <= max(3, len(light) // 4) else []
+
+
+def _rod_kg(ends: FloatArray) -> float:
+    """Return the mass of a rod between two points, (2, 3)."""
+    length_m = float(np.linalg.norm(ends[1] - ends[0]))
+    return _DENSITY * length_m * (_ROD_WIDTH * length_m) ** 2
+
+
+def _tell(without: Sequence[str], placeholders: Sequence[str], notes: Notes) -> None:
+    if without:
+        notes.guess(
+            "masses",
+            f"the file gives no mass for {listed(without)}: guessed by its shapes or by the others",
+            parts=without,
+        )
+    if placeholders:
+        notes.guess(
+            "masses",
+            f"the masses in the file of {listed(placeholders)} are placeholders, far below what "
+            "such links weigh: guessed by their shapes or by the others",
+            parts=placeholders,
+        )
 
 
 def _together(posed: PosedRobot, bodies: Sequence[int]) -> Mass:

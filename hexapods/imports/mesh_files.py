@@ -6,6 +6,7 @@ sees them. Other formats cannot be read.
 
 import posixpath
 import re
+from collections.abc import Collection
 
 import numpy as np
 
@@ -67,19 +68,23 @@ class MeshFiles:
             self._names[path, scale] = self._take(path)
         return self._names[path, scale]
 
+    def with_missing(self, problem: str) -> str:
+        """Return why a robot is refused, with the meshes that are missing if any is."""
+        missing = self._missing_sentence()
+        return f"{problem}; {missing}, on which this may depend" if missing else problem
+
+    def _missing_sentence(self) -> str:
+        what = "missing from the upload (put them into a zip with the document)"
+        return _sentence(self._missing, what)
+
     def tell(self) -> None:
         """Add notes about meshes that are missing or cannot be read."""
-        for names, what in (
-            (self._missing, "missing from the upload (put them into a zip with the document)"),
-            (self._unreadable, f"left out, since only {', '.join(FORMATS)} are read"),
-        ):
-            kinds = sorted(set(names))
-            if kinds:
-                self._notes.repair(
-                    "meshes",
-                    f"{counted(len(kinds), 'mesh', 'meshes')} {'is' if len(kinds) == 1 else 'are'} "
-                    f"{what}; simple shapes are drawn instead: {listed(kinds)}",
-                )
+        unreadable = _sentence(
+            self._unreadable, f"left out, since only {', '.join(FORMATS)} are read"
+        )
+        for sentence in (self._missing_sentence(), unreadable):
+            if sentence:
+                self._notes.repair("meshes", f"{sentence}; simple shapes are drawn instead")
 
     def _take(self, path: str) -> str | None:
         ending = posixpath.splitext(path)[1].lower()
@@ -116,6 +121,15 @@ class MeshFiles:
             self._notes.repair("meshes", f"a mesh was left out: {error}")
             return None
         return _simplified(corners, path, self._notes)
+
+
+def _sentence(names: Collection[str], what: str) -> str:
+    """Return how many meshes are something, with their names; empty if there are none."""
+    kinds = sorted(set(names))
+    if not kinds:
+        return ""
+    verb = "is" if len(kinds) == 1 else "are"
+    return f"{counted(len(kinds), 'mesh', 'meshes')} {verb} {what}: {listed(kinds)}"
 
 
 def _plain_stl(content: bytes, path: str, notes: Notes) -> bytes:

@@ -6,15 +6,19 @@ gets through only if it is added here.
 
 import math
 import posixpath
+from collections.abc import Iterable
 
 from hexapods.domain.errors import DamagedFile
+from hexapods.domain.text import counted
 from hexapods.imports.mesh_files import MeshFiles
-from hexapods.imports.notes import Notes, quoted
+from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.upload import last_part
-from hexapods.imports.xml import Element
+from hexapods.imports.xml import MAX_NAME, Element, check_kept
 
 MAX_BODIES, MAX_JOINTS, MAX_GEOMS = 300, 300, 2000
 _MAX_NUMBER = 1e12
+_MAX_NAMES = 100
+"""Names that a note is about."""
 _REFUSED = {
     "include": "it includes another file, which is not followed: merge it into this one",
     "replicate": "copies by <replicate> are not made: write the bodies themselves",
@@ -93,8 +97,10 @@ def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
             continue
         raise DamagedFile(f"{element.place}: {_REFUSED[element.tag]}")
     _tell_of_mechanisms(root, notes)
+    _drop_other_actuators(root, notes)
     folder, strips = _mesh_folder(root)
     _keep_known(root)
+    check_kept(root)
     _check_counts(root)
     _resolve_meshes(root, folder, strips, meshes)
     compiler = Element("compiler", root.line, {"usethread": "false"})
@@ -102,20 +108,62 @@ def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
 
 
 def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
-    mechanisms = sorted(
-        {
-            element.tag
-            for section in root
-            if section.tag in ("equality", "tendon")
-            for element in section
-            if element.tag != "joint" or section.tag != "equality"
-        }
-    )
-    if mechanisms:
+    """Tell of tendons and equality constraints, which are left out."""
+    mechanisms = [
+        element for section in root if section.tag in ("equality", "tendon") for element in section
+    ]
+    coupled = [element for element in mechanisms if element.tag == "joint"]
+    connecting = [element for element in mechanisms if element.tag != "joint"]
+    if coupled:
+        joints = _names(coupled, "joint1", "joint2")
         notes.repair(
             "joints",
-            f"left out what connects bodies beside joints ({', '.join(map(quoted, mechanisms))}): "
+            f"equality constraints of joints are not followed, each joint has a servo of its own: "
+            f"{listed(joints)}",
+            parts=joints,
+        )
+    if connecting:
+        tags = sorted({element.tag for element in connecting})
+        jointed = [joint for element in connecting for joint in element]
+        notes.repair(
+            "joints",
+            f"left out what connects bodies beside joints ({', '.join(map(quoted, tags))}): "
             "each joint gets a servo of its own",
+            parts=[*_names(connecting, "body1", "body2"), *_names(jointed, "joint")],
+        )
+
+
+def _names(elements: Iterable[Element], *attributes: str) -> list[str]:
+    """Return what some attributes of elements name, each name once; of very many the first."""
+    names = [element.attributes.get(name, "") for element in elements for name in attributes]
+    return list(dict.fromkeys(name for name in names if 0 < len(name) <= MAX_NAME))[:_MAX_NAMES]
+
+
+def _drop_other_actuators(root: Element, notes: Notes) -> None:
+    """Remove actuators that act on no joint: what they act on is left out, or no servo can do."""
+    dropped: list[Element] = []
+    for section in root:
+        if section.tag != "actuator":
+            continue
+        for actuator in section:
+            # For hinges the same; it differs for balls and free joints.
+            joint = actuator.attributes.pop("jointinparent", None)
+            if joint is not None:
+                actuator.attributes.setdefault("joint", joint)
+        kept = [
+            actuator
+            for actuator in section
+            if actuator.tag in _ACTUATORS and "joint" in actuator.attributes
+        ]
+        dropped += [actuator for actuator in section if actuator not in kept]
+        section.children = kept
+    if dropped:
+        names = [actuator.attributes.get("name", f"<{actuator.tag}>") for actuator in dropped]
+        notes.repair(
+            "servos",
+            f"left out {counted(len(dropped), 'actuator')} that no servo of a joint can replace "
+            f"(of a tendon, a site or a body, or muscles): {listed(names)}",
+            parts=_names(dropped, "joint", "body"),
         )
 
 
@@ -181,8 +229,7 @@ def _check_counts(root: Element) -> None:
 
 
 def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles) -> None:
-    """Give meshes their names in the assets; remove those that are missing, and their geoms."""
-    lost: set[str | None] = set()
+    """Give meshes their names in the assets, and remove those that are missing."""
     for asset in root.all("asset"):
         present = []
         for mesh in asset:
@@ -193,23 +240,7 @@ def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles)
                 path = last_part(wanted) if strips else wanted
                 name = meshes.add(posixpath.join(folder, path))
                 if name is None:
-                    lost.add(mesh.attributes["name"])
                     continue
                 mesh.attributes["file"] = name
             present.append(mesh)
         asset.children = present
-    if lost:
-        meshes_left = {mesh.attributes.get("name") for mesh in root.all("mesh")}
-        _remove_geoms(root, lost - meshes_left, meshes)
-
-
-def _remove_geoms(root: Element, lost: set[str | None], meshes: MeshFiles) -> None:
-    for parent in [root, *root.all()]:
-        children = [
-            child
-            for child in parent
-            if child.tag != "geom" or child.attributes.get("mesh", "") not in lost
-        ]
-        if len(children) < len(parent.children):
-            meshes.undrawn.add(parent.attributes.get("name", ""))
-        parent.children = children

@@ -43,17 +43,21 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
     if root.tag == "mujoco":
         clean_mjcf(root, meshes, notes)
     else:
-        clean_urdf(root, meshes)
+        clean_urdf(root, meshes, notes)
     meshes.tell()
-    document = write_xml(root)
-    compiled = compile_document(document, meshes.assets, meshes.undrawn, notes, choices.scale)
+    try:
+        compiled = compile_document(
+            write_xml(root), meshes.assets, meshes.undrawn, notes, choices.scale
+        )
+    except DamagedFile as error:
+        raise DamagedFile(meshes.with_missing(str(error))) from error
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
     origin = FileOrigin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
     try:
         robot, problem = build(compiled, origin, choices, notes), None
     except InvalidInput as error:
-        robot, problem = None, str(error)
+        robot, problem = None, meshes.with_missing(str(error))
     return RobotReading(robot, problem, notes.collected(), sketch_robot(compiled, robot))
 
 

@@ -1,12 +1,12 @@
-"""Clean a URDF document: keep what describes a body, and check that its links form one tree."""
+"""Clean a URDF document: keep what describes a body, and find the tree of links of the robot."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from hexapods.domain.errors import DamagedFile
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import MAX_BODIES, MAX_GEOMS, check_numbers
-from hexapods.imports.notes import listed, quoted
-from hexapods.imports.xml import Element
+from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.xml import Element, check_kept
 
 _KEPT: dict[str, frozenset[str]] = {
     "robot": frozenset({"link", "joint"}),
@@ -36,6 +36,13 @@ _ATTRIBUTES: dict[str, frozenset[str]] = {
     "dynamics": frozenset({"damping"}),
 }
 _TEXTS = frozenset({"name", "filename", "type", "link"})
+_MAY_REPEAT = frozenset({"link", "joint", "visual", "collision"})
+"""Tags of which a parent may have several children."""
+_VECTORS = frozenset({"xyz", "rpy", "size", "scale"})
+"""Attributes of three numbers; the others have one."""
+_MAX_TOLD = 100
+_WORLD = "world"
+"""Name of a link that MuJoCo takes for the world."""
 _JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 _XACRO = "http://www.ros.org/wiki/xacro"
 
@@ -55,21 +62,25 @@ def check_expanded(root: Element) -> None:
             )
 
 
-def clean_urdf(root: Element, meshes: MeshFiles) -> None:
+def clean_urdf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
     """Remove elements that do not describe a body from a URDF document; add meshes to `meshes`.
 
     Raises:
         DamagedFile: if its links are no tree, or it has too many links or shapes.
     """
     check_expanded(root)
+    _tell_of_mimics(root, notes)
     for parent in [root, *root.all()]:
         kept_tags = _KEPT.get(parent.tag, frozenset())
         parent.children = [child for child in parent.children if child.tag in kept_tags]
         attributes = _ATTRIBUTES.get(parent.tag, frozenset())
         parent.attributes = {n: v for n, v in parent.attributes.items() if n in attributes}
+    check_kept(root)
+    _keep_first(root, notes)
     for element in [root, *root.all()]:
         check_numbers(element, _TEXTS)
-    _check_tree(root)
+    _keep_robot(root, notes)
+    _check_counts(root)
     _resolve_shapes(root, meshes)
     for joint in root.all("joint"):
         if joint.attributes.get("type") == "continuous":
@@ -87,6 +98,63 @@ def clean_urdf(root: Element, meshes: MeshFiles) -> None:
     root.children.insert(0, extension)
 
 
+def _tell_of_mimics(root: Element, notes: Notes) -> None:
+    names = [
+        joint.attributes.get("name", "")
+        for joint in root
+        if joint.tag == "joint" and joint.first("mimic") is not None
+    ]
+    if names:
+        notes.repair(
+            "joints",
+            "<mimic> is not followed, each joint has a servo of its own: " + listed(names),
+            parts=names[:_MAX_TOLD],
+        )
+
+
+def _keep_first(root: Element, notes: Notes) -> None:
+    """Remove elements and numbers that are more than URDF has: the first count."""
+    places, links = [], []
+    for top in root:
+        for parent in [top, *top.all()]:
+            kept = _first_of_each(parent)
+            if len(kept) < len(parent.children) or _cut_numbers(parent):
+                places.append(f"{parent.place} of {top.place}" if parent is not top else top.place)
+                links.append(top.attributes.get("name", ""))
+            parent.children = kept
+    if places:
+        notes.repair(
+            "file",
+            "of elements that a URDF has once, and of more numbers than it has, the first count: "
+            + listed(places),
+            parts=list(dict.fromkeys(links))[:_MAX_TOLD],
+        )
+
+
+def _first_of_each(parent: Element) -> list[Element]:
+    """Return the children without those that are there a second time; a geometry has one shape."""
+    kept: list[Element] = []
+    tags: set[str] = set()
+    for child in parent:
+        tag = "shape" if parent.tag == "geometry" else child.tag
+        if tag not in tags or tag in _MAY_REPEAT:
+            kept.append(child)
+        tags.add(tag)
+    return kept
+
+
+def _cut_numbers(element: Element) -> bool:
+    """Cut off the numbers that an attribute has too many; False if there are none."""
+    is_cut = False
+    for name, value in element.attributes.items():
+        words = value.split()
+        most = 3 if name in _VECTORS else 1
+        if name not in _TEXTS and len(words) > most:
+            element.attributes[name] = " ".join(words[:most])
+            is_cut = True
+    return is_cut
+
+
 def _drop_range(joint: Element) -> None:
     limit = joint.first("limit")
     if limit is not None:
@@ -94,33 +162,112 @@ def _drop_range(joint: Element) -> None:
         limit.attributes.pop("upper", None)
 
 
-def _check_tree(root: Element) -> None:
+def _keep_robot(root: Element, notes: Notes) -> None:
+    """Keep of several trees of links the one with the most joints, which is the robot.
+
+    A floating joint parts two trees: what is below it moves freely.
+    """
     links = [child for child in root if child.tag == "link"]
     joints = [child for child in root if child.tag == "joint"]
     if not links:
         raise DamagedFile("the URDF has no <link>")
-    if len(links) > MAX_BODIES:
-        raise DamagedFile(f"it has {len(links):,} links; a robot has at most {MAX_BODIES}")
-    shapes = sum(1 for _ in root.all("geometry"))
-    if shapes > MAX_GEOMS:
-        raise DamagedFile(f"it has {shapes:,} shapes; a robot has at most {MAX_GEOMS:,}")
-    names = _unique_names(links)
+    joint_above = _joints_above(_unique_names(links), joints)
+    _check_acyclic(joint_above)
+    parent_of = {
+        link: _link_at(joint, "parent")
+        for link, joint in joint_above.items()
+        if joint.attributes["type"] != "floating"
+    }
+    roots = [link.attributes["name"] for link in links if link.attributes["name"] not in parent_of]
+    if len(roots) == 1:
+        return
+    trees = {name: _below(name, parent_of) for name in roots}
+    moving = {
+        name: sum(joint_above[link].attributes["type"] != "fixed" for link in tree if link != name)
+        for name, tree in trees.items()
+    }
+    best = max(roots, key=lambda name: moving[name])
+    if not moving[best]:
+        raise DamagedFile(
+            f"the links must be one tree below one link; {len(roots)} have no parent: "
+            f"{listed(roots)}"
+        )
+    root.children = [
+        child
+        for child in root
+        if (child.attributes["name"] if child.tag == "link" else _link_at(child, "child"))
+        in trees[best]
+    ]
+    left = [name for name in roots if name != best]
+    if best in joint_above:
+        above = _float_in_world(root, joint_above[best], parent_of)
+        if not any(link.children for link in links if link.attributes["name"] in trees[above]):
+            left.remove(above)
+    if left:
+        notes.repair(
+            "links",
+            f"left out what is not joined to the robot, which begins at {quoted(best)}: "
+            f"{listed(left)}",
+            parts=[best],
+        )
+
+
+def _joints_above(names: Collection[str], joints: Sequence[Element]) -> dict[str, Element]:
+    """Return the joint above each link that has one."""
     _unique_names(joints)
-    parent_of: dict[str, str] = {}
+    joint_above: dict[str, Element] = {}
     for joint in joints:
         if joint.attributes.get("type") not in _JOINT_TYPES:
             raise DamagedFile(f"{joint.place}: its type must be one of {', '.join(_JOINT_TYPES)}")
-        parent, child = (_end_of(joint, tag, names) for tag in ("parent", "child"))
-        if child in parent_of:
+        for tag in ("parent", "child"):
+            if _link_at(joint, tag) not in names:
+                raise DamagedFile(
+                    f"{joint.place}: its {tag} is no link: {quoted(_link_at(joint, tag))!r}"
+                )
+        child = _link_at(joint, "child")
+        if child in joint_above:
             raise DamagedFile(f"{joint.place}: link {quoted(child)} has two parents")
-        parent_of[child] = parent
-    roots = [name for name in names if name not in parent_of]
-    if len(roots) != 1:
-        raise DamagedFile(
-            f"the links must be one tree below one link; {len(roots)} have no parent"
-            + (f": {listed(sorted(roots))}" if roots else "")
-        )
-    _check_connected(names, parent_of)
+        joint_above[child] = joint
+    return joint_above
+
+
+def _link_at(joint: Element, tag: str) -> str:
+    """Return the name of a joint's parent or child; empty if there is none."""
+    element = joint.first(tag)
+    return "" if element is None else element.attributes.get("link", "")
+
+
+def _float_in_world(root: Element, joint: Element, parent_of: Mapping[str, str]) -> str:
+    """Let a robot float in the world, as MuJoCo reads it, and return the root that it was below."""
+    above = _link_at(joint, "parent")
+    joint.children = [Element("parent", joint.line, {"link": _WORLD}), *joint.children]
+    joint.children = _first_of_each(joint)
+    root.children.insert(0, Element("link", joint.line, {"name": _WORLD}))
+    while above in parent_of:
+        above = parent_of[above]
+    return above
+
+
+def _below(name: str, parent_of: Mapping[str, str]) -> Collection[str]:
+    """Return a link and all links below it."""
+    children: dict[str, list[str]] = {}
+    for child, parent in parent_of.items():
+        children.setdefault(parent, []).append(child)
+    tree, waiting = set(), [name]
+    while waiting:
+        link = waiting.pop()
+        tree.add(link)
+        waiting += children.get(link, [])
+    return tree
+
+
+def _check_counts(root: Element) -> None:
+    links = sum(child.tag == "link" for child in root)
+    if links > MAX_BODIES:
+        raise DamagedFile(f"it has {links:,} links; a robot has at most {MAX_BODIES}")
+    shapes = sum(1 for _ in root.all("geometry"))
+    if shapes > MAX_GEOMS:
+        raise DamagedFile(f"it has {shapes:,} shapes; a robot has at most {MAX_GEOMS:,}")
 
 
 def _unique_names(elements: Sequence[Element]) -> set[str]:
@@ -133,24 +280,18 @@ def _unique_names(elements: Sequence[Element]) -> set[str]:
     return names
 
 
-def _end_of(joint: Element, tag: str, names: set[str]) -> str:
-    element = joint.first(tag)
-    link = "" if element is None else element.attributes.get("link", "")
-    if link not in names:
-        raise DamagedFile(f"{joint.place}: its {tag} is no link: {quoted(link)!r}")
-    return link
-
-
-def _check_connected(names: set[str], parent_of: dict[str, str]) -> None:
-    below: dict[str, list[str]] = {name: [] for name in names}
-    for child, parent in parent_of.items():
-        below[parent].append(child)
-    waiting, reached = [name for name in names if name not in parent_of], 0
-    while waiting:
-        waiting.extend(below[waiting.pop()])
-        reached += 1
-    if reached < len(names):
-        raise DamagedFile("some links are their own ancestors; the links must be one tree")
+def _check_acyclic(joint_above: Mapping[str, Element]) -> None:
+    """Check that no link is its own ancestor."""
+    checked: set[str] = set()
+    for name in joint_above:
+        path: set[str] = set()
+        link = name
+        while link in joint_above and link not in checked:
+            if link in path:
+                raise DamagedFile("some links are their own ancestors; the links must be one tree")
+            path.add(link)
+            link = _link_at(joint_above[link], "parent")
+        checked |= path
 
 
 def _resolve_shapes(root: Element, meshes: MeshFiles) -> None:

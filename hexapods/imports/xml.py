@@ -13,6 +13,9 @@ from hexapods.domain.errors import DamagedFile
 from hexapods.imports.notes import quoted
 
 MAX_ELEMENTS = 20_000
+"""Elements that are kept of a document."""
+MAX_PARSED = 100_000
+"""Elements of a document, with those that are left out."""
 MAX_DEPTH = 200
 MAX_ATTRIBUTES = 60
 MAX_ATTRIBUTE = 20_000
@@ -125,20 +128,12 @@ class _DocumentReader:
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
-        if self._count > MAX_ELEMENTS:
-            raise self._problem(f"it has more than {MAX_ELEMENTS:,} elements")
+        if self._count > MAX_PARSED:
+            raise self._problem(f"it has more than {MAX_PARSED:,} elements")
         if len(self._open) >= MAX_DEPTH:
             raise self._problem(f"elements are nested more than {MAX_DEPTH} deep")
         if len(attributes) > MAX_ATTRIBUTES:
             raise self._problem(f"<{quoted(tag)}> has more than {MAX_ATTRIBUTES} attributes")
-        for name, value in attributes.items():
-            most = MAX_NUMBERS if name in _LISTS else MAX_ATTRIBUTE
-            most = MAX_NAME if name in ("name", "class") else most
-            if len(value) > most:
-                raise self._problem(
-                    f"{quoted(name)} of <{quoted(tag)}> has {len(value):,} characters; it may "
-                    f"have {most:,}"
-                )
         element = Element(tag, self._parser.CurrentLineNumber, dict(attributes))
         if self._open:
             self._open[-1].children.append(element)
@@ -156,6 +151,25 @@ class _DocumentReader:
         if self._parts is not None:
             element.text = "".join(self._parts)
             self._parts = None
+
+
+def check_kept(root: Element) -> None:
+    """Check the bounds of what was kept of a document.
+
+    Raises:
+        DamagedFile: if it has too many elements, or an attribute is too long.
+    """
+    for number, element in enumerate([root, *root.all()], start=1):
+        if number > MAX_ELEMENTS:
+            raise DamagedFile(f"it has more than {MAX_ELEMENTS:,} elements")
+        for name, value in element.attributes.items():
+            most = MAX_NUMBERS if name in _LISTS else MAX_ATTRIBUTE
+            most = MAX_NAME if name in ("name", "class") else most
+            if len(value) > most:
+                raise DamagedFile(
+                    f"line {element.line}: {quoted(name)} of <{quoted(element.tag)}> has "
+                    f"{len(value):,} characters; it may have {most:,}"
+                )
 
 
 @dataclass(frozen=True)

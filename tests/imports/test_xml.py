@@ -3,7 +3,15 @@ import re
 import pytest
 
 from hexapods.domain.errors import DamagedFile
-from hexapods.imports.xml import MAX_ATTRIBUTE, MAX_DEPTH, MAX_ELEMENTS, read_xml, write_xml
+from hexapods.imports.xml import (
+    MAX_ATTRIBUTE,
+    MAX_DEPTH,
+    MAX_ELEMENTS,
+    MAX_PARSED,
+    check_kept,
+    read_xml,
+    write_xml,
+)
 
 LAUGHS = b'<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a name="&c;"/>'
 
@@ -14,9 +22,7 @@ LAUGHS = b'<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a name="&c;"/>
         (LAUGHS, "line 1: a document type or an entity is not read"),
         (b'<!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "a document type or an entity"),
         (b"<a>" * (MAX_DEPTH + 1), f"nested more than {MAX_DEPTH} deep"),
-        (b"<a>" + b"<b/>" * MAX_ELEMENTS, f"more than {MAX_ELEMENTS:,} elements"),
-        (b'<a pos="' + b"1 " * MAX_ATTRIBUTE + b'"/>', "pos of <a> has 40,000 characters"),
-        (b'<a name="' + b"x" * 300 + b'"/>', "name of <a> has 300 characters; it may have 200"),
+        (b"<a>" + b"<b/>" * MAX_PARSED, f"more than {MAX_PARSED:,} elements"),
         (b"<a " + b" ".join(b'b%d="1"' % n for n in range(70)) + b"/>", "more than 60 attributes"),
         (b"<a>\n<b>\n</a>", "line 3: mismatched tag"),
         (b"\xff\xfe\x00", "is no whole XML document"),
@@ -28,6 +34,21 @@ def test_xml_that_exceeds_a_bound_is_refused(data: bytes, said: str) -> None:
     with pytest.raises(DamagedFile, match=re.escape(said)) as raised:
         read_xml(data, "robot.xml")
     assert str(raised.value).count("robot.xml") == 1
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"<a>" + b"<b/>" * MAX_ELEMENTS + b"</a>", f"more than {MAX_ELEMENTS:,} elements"),
+        (b'<a pos="' + b"1 " * MAX_ATTRIBUTE + b'"/>', "line 1: pos of <a> has 40,000 characters"),
+        (b'<a name="' + b"x" * 300 + b'"/>', "name of <a> has 300 characters; it may have 200"),
+    ],
+)
+def test_what_is_kept_has_bounds_of_its_own(data: bytes, said: str) -> None:
+    root = read_xml(data, "robot.xml")
+
+    with pytest.raises(DamagedFile, match=re.escape(said)):
+        check_kept(root)
 
 
 def test_a_document_keeps_its_lines() -> None:
