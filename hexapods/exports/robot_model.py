@@ -6,6 +6,7 @@ from hexapods.domain.gait import resolve
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray
+from hexapods.exports.mjcf_text import mjcf_text
 from hexapods.physics.mjcf import robot_spec
 
 HOME_KEY = "home"
@@ -17,15 +18,10 @@ def robot_mjcf(robot: Robot) -> str:
     The keyframe `home` has it standing with every foot at home, and its servos told to stay so.
     Bodies, joints and actuators have the labels of the joints, such as `leg1_coxa`.
     """
-    spec = robot_spec(robot)
-    spec.modelname = robot.name
     standing = home_angles_rad(robot)
     height_m = robot.body_height_m + robot.foot_radius_m
     qpos = np.concatenate(([0, 0, height_m, 1, 0, 0, 0], standing))
-    spec.add_key(name=HOME_KEY, qpos=qpos, ctrl=standing)
-    # MuJoCo writes the model as it was compiled.
-    spec.compile()
-    return str(spec.to_xml())
+    return mjcf_text(robot_spec(robot), robot.name, {HOME_KEY: (qpos, standing)}, {})
 
 
 def home_angles_rad(robot: Robot) -> FloatArray:
