@@ -21,10 +21,11 @@ from hexapods.imports.imported import Sketch, SketchFoot, SketchPart
 SKETCH_ROOT = f"{WORLD}/sketch"
 GROUP_COLORS = ("#7d63f7", "#e25c8d", "#25a493", "#c08a1e", "#6a8aac", "#9a9a2a")
 """Between those that the page has for groups in light and in dark."""
-_PART: Rgb = (118, 126, 140)
-_FOOT: Rgb = (255, 176, 32)
+PART: Rgb = (118, 126, 140)
+FOOT: Rgb = (255, 176, 32)
 _TABLE: Rgb = (150, 160, 178)
-_TABLE_HALF_M, _TABLE_MARGIN = 0.004, 1.12
+TABLE_MARGIN, _TABLE_HALF_M = 1.12, 0.004
+"""Radius of the turntable relative to that of the robot, and half its height [m]."""
 _USUAL_M = 0.35
 """Radius of a robot for which the lamp of the stage stands right."""
 
@@ -42,16 +43,13 @@ def draw_sketch(
         groups: legs of each group, from 1; without any all legs have one colour.
     """
     lamp = draw_ground(server)
-    vertices = [part.mesh.arrays()[0] for part in sketch.parts if part.mesh is not None]
-    points = [*vertices, np.array([foot.at_m for foot in sketch.feet]).reshape(-1, 3)]
-    out_m = [float(np.linalg.norm(at[:, :2], axis=1).max(initial=0.0)) for at in points]
-    radius_m = max(*out_m, 0.01)
+    radius_m = radius_of(sketch)
     size = radius_m / _USUAL_M
     x, y, z = LAMP
     lamp.position = (x * size, y * size, z * size)
     scene = server.scene
     scene.add_frame(SKETCH_ROOT, show_axes=False)
-    table = cylinder(radius_m * _TABLE_MARGIN, _TABLE_HALF_M * size)
+    table = cylinder(radius_m * TABLE_MARGIN, _TABLE_HALF_M * size)
     scene.add_mesh_simple(
         f"{SKETCH_ROOT}/table",
         table.vertices,
@@ -69,7 +67,7 @@ def draw_sketch(
                 f"{SKETCH_ROOT}/part/{number}",
                 corners,
                 faces,
-                color=colors.get(part.leg, rgb(GROUP_COLORS[0]) if part.leg else _PART),
+                color=colors.get(part.leg, rgb(GROUP_COLORS[0]) if part.leg else PART),
                 flat_shading=True,
                 side="double",
                 receive_shadow=False,
@@ -78,11 +76,18 @@ def draw_sketch(
         scene.add_icosphere(
             f"{SKETCH_ROOT}/foot/{number}",
             radius=1.25 * foot.radius_m + 0.004 * size,
-            color=_FOOT,
+            color=FOOT,
             opacity=0.75,
             position=foot.at_m,
             cast_shadow=False,
         )
+
+
+def radius_of(sketch: Sketch) -> float:
+    """Return the radius of a circle on the ground around all of a sketch [m]."""
+    vertices = [part.mesh.arrays()[0] for part in sketch.parts if part.mesh is not None]
+    points = [*vertices, np.array([foot.at_m for foot in sketch.feet]).reshape(-1, 3)]
+    return max(0.01, *(float(np.linalg.norm(at[:, :2], axis=1).max(initial=0.0)) for at in points))
 
 
 def sketch_body(robot: Robot, gait: Gait) -> Sketch:

@@ -7,7 +7,8 @@
 - `recorded_walks`: the recorded steps of each robot, the source of most formats.
 - `trajectory`: joint angles, feet and torques over time, as CSV and Parquet.
 - `replay_page`: a page that replays a run without a server.
-- `video`, `video_pictures`: MP4 and GIF, rendered off screen by MuJoCo.
+- `video`, `video_pictures`: MP4 and GIF, rendered off screen by MuJoCo; `sketch_picture`: a PNG of
+  the robot in a file, before it is stored.
 - `mcap_log`: joint states and frames for tools of robots.
 - `recording_json`: a race's recording as JSON.
 - `servo_map`, `servo_map_file`, `servo_walk`, `servo_files`: a walk as pulses of a real robot's

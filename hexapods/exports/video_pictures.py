@@ -30,7 +30,7 @@ def pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.ui
     scene = _Scene(shown, options)
     followed = 0.0
     caption = _Caption(shown.agents, options.height)
-    context = _new_gl_context(options.width, options.height)
+    context = gl_context(options.width, options.height)
     try:
         painter = scene.painter()
         for number, (time_s, poses) in enumerate(zip(shown.times_s, shown.poses, strict=True)):
@@ -55,7 +55,7 @@ class RobotCamera:
         """Draw the robot that a problem's seed builds; raises MissingExtra without OpenGL."""
         shown = ShownPoses(problem, ("",), (), np.empty((0, 1, 0)))
         self._scene = _Scene(shown, options)
-        self._context = _new_gl_context(options.width, options.height)
+        self._context = gl_context(options.width, options.height)
         self._paint = self._scene.painter()
 
     def picture(self, pose: FloatArray) -> NDArray[np.uint8]:
@@ -76,8 +76,12 @@ class RobotCamera:
         self._context.free()
 
 
-def _new_gl_context(width: int, height: int) -> Any:
-    """Return a new OpenGL context, the current one of this thread."""
+def gl_context(width: int, height: int) -> Any:
+    """Return a new OpenGL context for drawing off screen, the current one of this thread.
+
+    Raises:
+        MissingExtra: if a package of the extra `video`, or OpenGL, is not installed.
+    """
     name = "osmesa" if os.environ.get("MUJOCO_GL", "").lower() == "osmesa" else "egl"
     with needs("video", "a video"):
         import OpenGL  # noqa: F401, PLC0415  # which MuJoCo imports next

@@ -24,6 +24,8 @@ MAX_TRIANGLES = 40_000
 """Triangles of all parts together."""
 _MIN_TRIANGLES = 60
 """Triangles of a shape, however many there are."""
+_ROD_WIDTH = 0.06
+"""Half the width of a rod, as a share of its length."""
 _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 
 
@@ -56,8 +58,8 @@ class _Sketcher:
 
     def sketch(self) -> Sketch:
         bodies = [body for body in range(1, self._model.nbody) if self._is_of_robot(body)]
-        surfaces = self._surfaces(bodies)
         feet = self._feet_of_robot() if self._robot else self._possible_feet(bodies)
+        surfaces = self._surfaces(bodies, feet)
         self._stand([*surfaces.values()], feet)
         moved_feet = [
             SketchFoot(name, leg, self._vector(at_m), radius_m)
@@ -81,31 +83,42 @@ class _Sketcher:
         first_leg_body = int(self._model.jnt_bodyid[next(iter(self._leg_of_joint))])
         return int(self._model.body_rootid[body]) == int(self._model.body_rootid[first_leg_body])
 
-    def _surfaces(self, bodies: Sequence[int]) -> dict[int, Triangles]:
-        """Return what is drawn of each body, in the frame of the file."""
+    def _surfaces(self, bodies: Sequence[int], feet: Sequence["_Foot"]) -> dict[int, Triangles]:
+        """Return what is drawn of each body, in the frame of the file.
+
+        Bodies without shapes are drawn as rods to the next bodies and to their foot.
+        """
         geoms = {body: drawn_geoms(self._compiled, body) for body in bodies}
         shapes = {
             geom: triangles_of(self._model, geom) for listed in geoms.values() for geom in listed
         }
         count = sum(len(faces) for _, faces in shapes.values())  # whole numbers
         share = min(1.0, MAX_TRIANGLES / max(count, 1))
-        return {
+        surfaces = {
             body: self._surface([(geom, shapes[geom]) for geom in geoms[body]], share)
             for body in bodies
         }
+        bare = [body for body in bodies if not len(surfaces[body][0])]
+        return surfaces | {body: self._rods(body, bodies, feet) for body in bare}
+
+    def _rods(self, body: int, bodies: Sequence[int], feet: Sequence["_Foot"]) -> Triangles:
+        """Return rods from a body to the bodies below it, and to its foot."""
+        start = self._data.xpos[body]
+        ends = [self._data.xpos[below] for below in bodies if self._parents[below] == body]
+        ends += [at_m for name, _, at_m, _ in feet if name == self._compiled.body_name(body)]
+        rods = [_rod(start, end) for end in ends]
+        return _joined([rod for rod in rods if len(rod[0])])
 
     def _surface(self, shapes: Sequence[tuple[int, Triangles]], share: float) -> Triangles:
-        all_vertices, all_faces, start = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+        surfaces = []
         for geom, (vertices, faces) in shapes:
             most = max(int(share * len(faces)), _MIN_TRIANGLES)
             shown, corners = cluster(vertices, faces, most) if share < 1 else (vertices, faces)
             rotation = self._data.geom_xmat[geom].reshape(3, 3)
             placed = shown @ rotation.T + self._data.geom_xpos[geom]
             if len(corners) and np.isfinite(placed).all():
-                all_vertices.append(placed)
-                all_faces.append(corners + start)
-                start += len(placed)
-        return np.concatenate(all_vertices), np.concatenate(all_faces)
+                surfaces.append((placed, corners))
+        return _joined(surfaces)
 
     def _stand(self, surfaces: Sequence[Triangles], feet: Sequence["_Foot"]) -> None:
         """Move the origin so that the lowest foot touches the ground, or else the lowest point."""
@@ -203,6 +216,33 @@ class _Sketcher:
 
     def _vector(self, at_m: FloatArray) -> Vector:
         return _vector(self._placed(at_m[None])[0])
+
+
+def _joined(surfaces: Sequence[Triangles]) -> Triangles:
+    """Return several surfaces as one."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in surfaces)])
+    faces = [faces + start for (_, faces), start in zip(surfaces, starts, strict=False)]
+    return (
+        np.concatenate([np.empty((0, 3)), *(vertices for vertices, _ in surfaces)]),
+        np.concatenate([np.empty((0, 3), np.int64), *faces]),
+    )
+
+
+def _rod(start: FloatArray, end: FloatArray) -> Triangles:
+    """Return a thin rod between two points; empty where they coincide."""
+    along = end - start
+    length_m = float(np.linalg.norm(along))
+    if not 1e-6 < length_m < math.inf:
+        return np.empty((0, 3)), np.empty((0, 3), np.int64)
+    along = along / length_m
+    across = np.cross(along, np.eye(3)[int(np.abs(along).argmin())])
+    across *= _ROD_WIDTH * length_m / np.linalg.norm(across)
+    other = np.cross(along, across)
+    corners = [across, other, -across, -other]
+    vertices = np.array([point + corner for point in (start, end) for corner in corners])
+    sides = [((n, (n + 1) % 4, n + 4), ((n + 1) % 4, (n + 1) % 4 + 4, n + 4)) for n in range(4)]
+    caps = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7)]
+    return vertices, np.array([*(face for side in sides for face in side), *caps])
 
 
 _Foot = tuple[str, int, FloatArray, float]

@@ -35,6 +35,11 @@ class KeptFile(NamedTuple):
     data: bytes
 
 
+def is_model_file(data: bytes) -> bool:
+    """Whether data are a zip, or XML after blanks and a byte order mark: no JSON."""
+    return data.startswith(b"PK") or data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+
+
 class Readings:
     """Files of robots that were looked at lately, and what was read from them. Thread-safe."""
 

@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from app.features.robots.readings import KeptFile, Readings
+from app.features.robots.readings import KeptFile, Readings, is_model_file
 from app.features.robots.response_models import FoundView
 from app.storage.database.robots import RobotOrigin
 from app.storage.database.store import RunStore
@@ -223,11 +223,6 @@ def _description(imported: ImportedRobot) -> bytes:
         reaches_grid=imported.reaches_grid,
     )
     return to_json_bytes(description)
-
-
-def is_model_file(data: bytes) -> bool:
-    """Whether data are a zip, or XML after blanks and a byte order mark: no JSON."""
-    return data.startswith(b"PK") or data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
 def _distinct(store: RunStore, name: str) -> str:

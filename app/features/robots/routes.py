@@ -16,7 +16,7 @@ from app.api.record_response import RecordResponse
 from app.api.schemas import PatchBody, one_given
 from app.api.work import ANALYSIS, ENCODING, Slots, Work
 from app.features.robots.reading_view import RobotReadingView, body_view, reading_view
-from app.features.robots.readings import Readings
+from app.features.robots.readings import Readings, is_model_file
 from app.features.robots.response_models import (
     StoredRobotsView,
     StoredRobotView,
@@ -28,7 +28,6 @@ from app.features.robots.robot_import import (
     check_stands,
     correct_robot,
     import_robot,
-    is_model_file,
     read_body,
     stored_file,
 )

@@ -4,23 +4,43 @@ They go through the running server; without one, the command makes the changes i
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import urlencode
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
+from app.cli.files import check_writable, write_whole
 from app.cli.options import AsJson, Data
 from app.cli.server_client import call_server
 from app.cli.stored_runs import open_for_reading, open_for_writing
+from app.features.robots.readings import KeptFile, is_model_file
 from app.settings import Settings, read_settings
-from hexapods.domain.errors import UnknownName
+from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.gait import resolve
+from hexapods.domain.model_robot import model_robot
+from hexapods.domain.records import from_json, to_json
+from hexapods.extras import needs
+from hexapods.imports.child import inspect_robot_file
+from hexapods.imports.choices import AS_FOUND, Choices
 from hexapods.imports.folder import read_robot_path
+from hexapods.imports.imported import ImportedRobot, RobotReading
+from hexapods.imports.notes import Note, listed, quoted
 
 if TYPE_CHECKING:
     from app.storage.database.store import RunStore
     from app.storage.stored_robot import StoredRobot
+
+
+def _choices(_: Any, tokens: Sequence[Token]) -> Choices:
+    """Read choices as JSON; a ValueError says what is wrong with them."""
+    try:
+        return from_json(Choices, json.loads(tokens[0].value))
+    except json.JSONDecodeError as error:
+        raise ValueError(f"must be a JSON object of choices: {error}") from error
+
 
 Name = Annotated[str, Parameter(name="NAME", help="name or id of a stored robot")]
 
@@ -30,6 +50,10 @@ def import_robot(
     /,
     *,
     name: str | None = None,
+    choices: Annotated[
+        Choices | None, Parameter(metavar="JSON", converter=_choices, accepts_keys=False)
+    ] = None,
+    picture: Annotated[str | None, Parameter(metavar="FILE.png")] = None,
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
@@ -40,14 +64,43 @@ def import_robot(
     Args:
         file: MJCF, URDF, a folder or zip with one, a document, or JSON with `robot`
         name: its name (default: that of the file)
+        choices: what to take instead of what is guessed: '{"forward": "y", "scale": 0.1}'
+        picture: file for a picture of what was read, also of a robot that is refused
 
     Raises:
         HexapodError: if it cannot be read or stored.
     """
     settings, path = read_settings(data=data), Path(file)
     content, file_name = read_robot_path(path)
-    name = name or _name(path)
+    name = name or _name(settings, path)
+    if not is_model_file(content):
+        if choices is not None or picture is not None:
+            raise InvalidInput("--choices and --picture are for MJCF, URDF, and zips with them")
+        return _import_document(settings, path, content, name, file_name, as_json=as_json)
+    chosen = choices or AS_FOUND
+    reading = inspect_robot_file(content, file_name, chosen)
+    if picture is not None:
+        _draw(reading, picture)
+    if reading.robot is None:
+        notes = _sentences(reading.notes)
+        feet = listed(foot.name for foot in reading.sketch.feet)
+        hint = f"\nWhat could be feet: {feet}" if feet else ""
+        raise InvalidInput("\n".join([f"{reading.problem}{hint}", *notes]))
+    view = _store(settings, reading.robot, KeptFile(file_name, content), name, chosen)
+    lines = [f"{path} is robot {view['name']} ({view['id']}) here."]
+    lines += _description(reading.robot)
+    return _print(view, "\n".join(lines + _sentences(reading.notes)), as_json)
 
+
+def _import_document(
+    settings: Settings,
+    path: Path,
+    content: bytes,
+    name: str | None,
+    file_name: str,
+    *,
+    as_json: bool,
+) -> int:
     def store_it(store: "RunStore") -> "StoredRobot":
         # Imported here, as it loads the jobs.
         from app.features.robots import robot_import  # noqa: PLC0415
@@ -56,18 +109,84 @@ def import_robot(
 
     query = urlencode({"name": name, "file": file_name})
     view = _changed(settings, store_it, ("POST", f"api/v1/robots?{query}", content))
-    lines = [f"{path} is robot {view['name']} ({view['id']}) here."]
-    lines += [f"Guessed: {guess}" for guess in view["guesses"]]
-    lines += [f"Repaired: {repair}" for repair in view["repairs"]]
-    return _print(view, "\n".join(lines), as_json)
+    return _print(view, f"{path} is robot {view['name']} ({view['id']}) here.", as_json)
 
 
-def _name(path: Path) -> str | None:
-    """Return the name of a file or folder for its robot; of a person's home folder none."""
+def _store(
+    settings: Settings, robot: ImportedRobot, kept: KeptFile, name: str | None, choices: Choices
+) -> Any:
+    """Store a robot that was read; with a server, that reads the file again itself."""
+    from app.storage.server_lock import FolderInUse  # noqa: PLC0415
+
+    try:
+        with open_for_writing(settings) as store:
+            from app.features.robots import robot_import  # noqa: PLC0415 - loads the jobs
+
+            return to_json(robot_import.import_reading(store, robot, kept, name, choices)[0])
+    except FolderInUse:
+        path = f"api/v1/robots/readings?{urlencode({'file': kept.name})}"
+        reading = call_server(settings, "POST", path, kept.data)
+        body = {"reading": reading["id"], "choices": to_json(choices), "name": name}
+        request = json.dumps(body).encode()
+        return call_server(settings, "POST", "api/v1/robots", request, "application/json")
+
+
+def _draw(reading: RobotReading, file: str) -> None:
+    """Write a picture of what was read.
+
+    Raises:
+        MissingExtra: if a package, or OpenGL, is missing that draws it.
+        InvalidInput: if the file cannot be written, or is no .png.
+    """
+    if Path(file).suffix.lower() != ".png":
+        raise InvalidInput(f"the name of the picture must end with .png: {file}")
+    check_writable(file)
+    with needs("video", "a picture"):
+        from hexapods.exports.sketch_picture import sketch_png  # noqa: PLC0415 - loads OpenGL
+    groups: Sequence[Sequence[int]] = ()
+    if (imported := reading.robot) is not None:
+        azimuths_deg = model_robot(imported.model, imported.name).azimuths_deg
+        groups = resolve(imported.gait, azimuths_deg).groups
+    write_whole(file, sketch_png(reading.sketch, groups))
+
+
+def _description(robot: ImportedRobot) -> list[str]:
+    legs = "; ".join(
+        f"{number} {', '.join(map(quoted, leg.joints))} to {quoted(leg.foot)}"
+        for number, leg in enumerate(robot.legs, start=1)
+    )
+    return [
+        f"It has {len(robot.legs)} legs and {robot.mass_kg:.3g} kg; its torso stands "
+        f"{1000 * robot.body_height_m:.0f} mm above its feet.",
+        f"Legs, anticlockwise from the front right one: {legs}.",
+    ]
+
+
+def _sentences(notes: Iterable[Note]) -> list[str]:
+    """Return notes as lines, guesses first, each with the choices that it offers."""
+    kinds = {"guess": "Guessed", "repair": "Repaired"}
+    ordered = sorted(notes, key=lambda note: note.kind == "repair")
+    return [f"{kinds[note.kind]}: {note.text}{_offer(note)}" for note in ordered]
+
+
+def _offer(note: Note) -> str:
+    if note.offer is None:
+        return ""
+    choices = {key: value for key, value in to_json(note.offer).items() if value is not None}
+    return f" (else: --choices '{json.dumps(choices)}')"
+
+
+def _name(settings: Settings, path: Path) -> str | None:
+    """Return the name of a file or folder for its robot, made distinct; None of a home folder."""
+    from app.storage.stored_robot import distinct_name  # noqa: PLC0415
+
     path = path.resolve()
     if path == Path.home():
         return None
-    return path.name if path.is_dir() else path.stem
+    taken: list[str] = []
+    with suppress(HexapodError), open_for_reading(settings) as store:  # there may be no store yet
+        taken = [stored.name for stored in store.robots.stored(hidden=True)]
+    return distinct_name(path.name if path.is_dir() else path.stem, taken)
 
 
 def hide_robot(
@@ -171,7 +290,6 @@ def _changed(
 ) -> Any:
     """Make a change, by the running server if there is one; return the robot as in its answers."""
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415
-    from hexapods.domain.records import to_json  # noqa: PLC0415
 
     try:
         with open_for_writing(settings) as store:

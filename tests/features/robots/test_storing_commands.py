@@ -9,7 +9,7 @@ import pytest
 from hexapods.domain import robot_documents
 from hexapods.domain.robot import document_of, robot
 from tests.cli.running import in_process, output, refusal
-from tests.imports.robots import dog
+from tests.imports.robots import FOUR, HOME, dog
 from tests.served import Served
 
 BODY = {"preset": "dog", "femur_m": 0.0955}
@@ -64,6 +64,43 @@ def test_a_folder_is_imported_under_its_name(folder: Path) -> None:
     data = ("--data", str(folder / "data"))
     refused = refusal("robots", "import", "empty", *data, folder=folder, run=in_process)
     assert "it has no document of a robot" in refused
+
+
+def test_what_was_read_is_told_corrected_and_drawn(folder: Path) -> None:
+    (folder / "dog.xml").write_text(dog(keyframes={"home": HOME}))
+    data = ("--data", str(folder / "data"))
+
+    def imported(*arguments: str) -> str:
+        done = in_process("robots", "import", "dog.xml", *arguments, *data, folder=folder)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    told = imported("--picture", "dog.png")
+    assert "dog.xml is robot dog 2" in told, "a preset is called dog"
+    assert "It has 4 legs and 8.4 kg" in told
+    assert "1 FR_hip_joint, FR_thigh_joint, FR_calf_joint to FR" in told
+    assert "Guessed: forward is x" in told
+    assert (folder / "dog.png").read_bytes().startswith(b"\x89PNG")
+    assert "forward is x" not in imported("--choices", '{"forward": "-x"}')
+    (folder / "two.xml").write_text(dog({leg: FOUR[leg] for leg in ("FL", "FR")}))
+    two = ("import", "two.xml", "--picture", "two.png")
+    refused = in_process("robots", *two, *data, folder=folder).stderr
+    assert "found 2 legs" in refused
+    assert "What could be feet: FL, FR" in refused
+    assert (folder / "two.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_choices_and_pictures_that_cannot_be_are_refused(folder: Path) -> None:
+    (folder / "dog.xml").write_text(dog())
+
+    def refused(*arguments: str) -> str:
+        data = ("--data", str(folder / "data"))
+        return refusal("robots", "import", *arguments, *data, folder=folder, run=in_process)
+
+    assert "JSON object" in refused("dog.xml", "--choices", "forward=y")
+    assert "up" in refused("dog.xml", "--choices", '{"up": "w"}')
+    assert "end with .png" in refused("dog.xml", "--picture", "dog.jpg")
+    assert "are for MJCF" in refused("rex.json", "--picture", "rex.png")
 
 
 def test_invalid_files_names_and_robots_are_refused(folder: Path) -> None:
