@@ -9,10 +9,11 @@ child `reading` goes through the steps:
 - `compiling` has MuJoCo turn it into numbers, in the `units` of the file and without
   `incomplete_shapes`; `posed_robot` is the
   robot with all joints at 0.
-- `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward and numbers
-  the legs; `stance` finds how it stands, by the kinematics of `chain`, `heights` how high it could;
-  `masses` and `servos` fill in what is missing; `shapes` finds what touches the ground, from
-  `surfaces`; `drawing` what is drawn.
+- `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward, by
+  the names of `sides`, and numbers the legs; `stance` finds how it stands, by the kinematics of
+  `chain` and `reach`, `heights` how high it could; `joint_kinds` names the joints; `masses` and
+  `servos` fill in what is missing; `shapes` finds what touches the ground, from `surfaces`;
+  `drawing` what is drawn.
 - `building` makes a `RobotModel` of all, `sketch` a picture of the bodies in the file, for a person
   who corrects what was guessed. `choices` are decisions of a person, `notes` guesses and
   repairs, `imported` the result.

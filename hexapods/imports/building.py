@@ -1,7 +1,6 @@
 """Build a `RobotModel` from a compiled file: find its parts, and assemble them."""
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,9 +23,11 @@ from hexapods.imports.directions import find_forward, find_gait, numbered
 from hexapods.imports.drawing import find_meshes
 from hexapods.imports.heights import body_height_m
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
+from hexapods.imports.joint_kinds import joint_kinds
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
 from hexapods.imports.posed_robot import PosedRobot, initial_pose, keyframes_of
+from hexapods.imports.reach import can_step
 from hexapods.imports.servos import (
     FoundServo,
     angle_limits,
@@ -36,16 +37,18 @@ from hexapods.imports.servos import (
 )
 from hexapods.imports.shapes import GroundShape, drop_touching, link_shapes, torso_shapes
 from hexapods.imports.skeleton import FoundLeg, find_skeleton
-from hexapods.imports.stance import Angles, RobotWithLegs, find_stance, reaches_grid
+from hexapods.imports.stance import (
+    Angles,
+    RobotWithLegs,
+    find_stance,
+    reaches_grid,
+)
 from hexapods.imports.units import apply_choices
 
 _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
 _LEAST_FOOT_M, _MOST_FOOT_M = 0.001, 2.0
 _SAME_PLACE_M = 1e-3
-_PLAIN_WORDS = frozenset({"", "joint", "jnt", "link", "leg", "j", "motor", "servo"})
-_MAX_JOINT_NAME = 24
-Names = list[tuple[str, ...]]
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,7 @@ class _Builder:
         robot = self._robot_with_legs()
         home, heights = find_stance(robot, self._choices, self._notes)
         reaches = reaches_grid(robot, home)
-        self._tell_of_reach(reaches)
+        self._tell_of_reach(home, reaches=reaches)
         links: dict[int | None, str] = {None: self._name_of_torso()}
         links |= {joint: self._name_of_link(joint) for joint in self._joints}
         masses = find_masses(self._posed, links, self._ends(), self._choices, self._notes)
@@ -219,13 +222,22 @@ class _Builder:
             angles(model.qpos0),
         )
 
-    def _tell_of_reach(self, reaches: bool) -> None:
+    def _tell_of_reach(self, home: Angles, *, reaches: bool) -> None:
         short = [n for n, chain in enumerate(self._chains, start=1) if len(chain.axes) < 3]
         if short:
-            numbers = ", ".join(map(str, short))
             self._notes.guess(
                 "legs",
-                f"legs {numbers} have two joints: their feet follow a grid only as far as they can",
+                "a leg of two joints follows a grid only as far as it can: "
+                f"{', '.join(map(str, short))}",
+                self._joint_names(short),
+            )
+        stuck = [leg for leg in short if not can_step(self._chains[leg - 1], home[leg - 1])]
+        if stuck:
+            self._notes.guess(
+                "stance",
+                "it cannot walk: from home a foot cannot both rise and move along the ground, that "
+                f"of leg {', '.join(map(str, stuck))}; choose other angles with which it stands",
+                self._joint_names(stuck),
             )
         elif not reaches:
             self._notes.guess(
@@ -239,6 +251,11 @@ class _Builder:
             self._notes.guess(
                 "joints", f"{which} have no limits in the file: 90° to each side of home"
             )
+
+    def _joint_names(self, legs: Iterable[int]) -> list[str]:
+        """Return the names of the joints of some legs, counted from 1."""
+        joints = [joint for leg in legs for joint in self._posed.legs[leg - 1].joints]
+        return [self._compiled.joint_name(joint) for joint in joints]
 
     def _ends(self) -> dict[int | None, FloatArray]:
         """Return the two end points of each link in the body frame, (2, 3) [m], by joint."""
@@ -367,29 +384,3 @@ def _with(
     mesh: ModelMesh | None,
 ) -> ModelLink:
     return replace(link, joint=joint, geoms=geoms, mesh=mesh)
-
-
-def joint_kinds(names: Sequence[Sequence[str]]) -> Names:
-    """Return names of the joints of each leg that tell their kind, the same for all legs.
-
-    Of `FL_hip_joint` and `RR_hip_joint` the name is `hip`: the words that all legs have in common.
-    Where there are none, or two joints would have one name, joints are numbered.
-    """
-    kinds_of_legs: Names = []
-    for leg in names:
-        alike = [other for other in names if len(other) == len(leg)]
-        kinds = []
-        for place, name in enumerate(leg):
-            common = set.intersection(*({*_words(other[place])} for other in alike))
-            words = [word for word in _words(name) if word in common and word not in _PLAIN_WORDS]
-            kind = "_".join(words)[:_MAX_JOINT_NAME]
-            kinds.append(f"joint{kind}" if kind.isdecimal() else kind)
-        if not all(kinds) or len(set(kinds)) < len(kinds) or len(alike) < 2:
-            kinds = [f"joint{place}" for place in range(1, len(leg) + 1)]
-        kinds_of_legs.append(tuple(kinds))
-    return kinds_of_legs
-
-
-def _words(name: str) -> list[str]:
-    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name)
-    return re.split(r"[^a-z0-9]+", apart.lower())

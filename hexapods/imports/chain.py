@@ -51,6 +51,35 @@ class LegChain:
             places = anchor + along + (out - along) * cos + np.cross(axis, out) * sin
         return places
 
+    def knee_heights_m(self, angles: FloatArray) -> FloatArray:
+        """Return how high the knee is above the line from the hip to the foot, (k,).
+
+        The hip is the second joint of three or more, which lifts the leg; the knee the joint after
+        it that is farthest from the line. Below the line the height is negative.
+
+        Args:
+            angles: (k, joints) [rad].
+        """
+        hip_joint = 1 if len(self.axes) > 2 else 0
+        hip = self._joint_at(hip_joint, angles)
+        along = self.feet(angles) - hip
+        along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+        heights, farthest = np.zeros(len(angles)), np.zeros(len(angles))
+        for joint in range(hip_joint + 1, len(self.axes)):
+            out = self._joint_at(joint, angles) - hip
+            out = out - (out * along).sum(axis=1, keepdims=True) * along
+            off = np.linalg.norm(out, axis=1)
+            heights = np.where(off > farthest, out[:, 2], heights)
+            farthest = np.maximum(farthest, off)
+        return heights
+
+    def _joint_at(self, joint: int, angles: FloatArray) -> FloatArray:
+        """Return the places of a joint, (k, 3)."""
+        above = LegChain(
+            self.axes[:joint], self.anchors[:joint], self.anchors[joint], self.limits[:, :joint]
+        )
+        return above.feet(angles[:, :joint])
+
     def jacobians(self, angles: FloatArray) -> FloatArray:
         """Return the derivatives of the foot's place by the angles, (k, 3, joints)."""
         count, joints = angles.shape

@@ -1,8 +1,8 @@
 """Finds the direction in which a robot walks, and numbers its legs."""
 
 import math
-import re
 from collections.abc import Mapping, Sequence
+from typing import get_args
 
 import numpy as np
 
@@ -12,23 +12,15 @@ from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
 from hexapods.imports.choices import Axis, Choices
 from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.sides import Side, contradict, sides_by_names
 from hexapods.imports.units import horizontal_axes
 
-_SHORT = {
-    "front": frozenset(["fl", "fr", "lf", "rf"]),
-    "hind": frozenset(["hl", "hr", "lh", "rh", "bl", "br", "lb", "rb", "rl", "rr", "lr"]),
-    "left": frozenset(["l", "fl", "lf", "hl", "lh", "bl", "lb", "rl", "lr", "ml", "lm"]),
-    "right": frozenset(["r", "fr", "rf", "hr", "rh", "br", "rb", "rr", "mr", "rm"]),
-}
-_LONG = {
-    "front": ("front", "fore"),
-    "hind": ("hind", "rear", "back"),
-    "left": ("left",),
-    "right": ("right",),
-}
 _AHEAD_DEG = 90.0
 """Forward in the body frame."""
 _NEARLY_DEG = 1.0
+_APART_SHARE, _ROUND_SHARE = 0.05, 0.05
+"""Least distance of a leg from the line between two columns, of the size of the robot; largest
+deviation of evenly spaced legs [of their radius, and rad]."""
 
 
 def find_forward(
@@ -53,36 +45,59 @@ def find_forward(
     axes = horizontal_axes(up)
     if choices.forward is not None:
         return _chosen(choices.forward, axes, up)
-    at = {word: _mean(mounts, names, word) for word in _SHORT}
-    front, hind, left, right = at["front"], at["hind"], at["left"], at["right"]
-    if _contradict(front, hind, left, right):
-        ahead, why = np.array([1.0, 0.0]), "since the names of the legs contradict their places"
+    sides = sides_by_names(mounts, names)
+    front, hind, left, right = (sides[side] for side in get_args(Side))
+    offer = None
+    if contradict(sides):
+        ahead, _ = _without_names(mounts)
+        why = "since the names of the legs contradict their places"
     elif front is not None and hind is not None:
         ahead, why = front - hind, "by the names of the legs in front and behind"
     elif left is not None and right is not None:
         across = left - right
         ahead, why = np.array([across[1], -across[0]]), "by the names of the legs left and right"
-    elif _asymmetry(mounts, 1) <= _asymmetry(mounts, 0) + 1e-6:
-        ahead, why = np.array([1.0, 0.0]), "as in most files, since no name tells"
     else:
-        ahead, why = np.array([0.0, 1.0]), "since the legs are symmetric to that axis"
-    angle = math.degrees(math.atan2(ahead[1], ahead[0]))
-    axis = min(axes, key=lambda name: abs(_wrapped(angle - axes[name])))
-    notes.guess("forward", f"forward is {axis} of the file's frame, {why}")
+        ahead, why = _without_names(mounts)
+        offer = Choices(forward=_nearest_axis(-ahead, axes))
+    axis = _nearest_axis(ahead, axes)
+    notes.guess("forward", f"forward is {axis} of the file's frame, {why}", offer=offer)
     return axes[axis]
 
 
-def _contradict(
-    front: FloatArray | None,
-    hind: FloatArray | None,
-    left: FloatArray | None,
-    right: FloatArray | None,
-) -> bool:
-    """Whether the left legs are on the right, seen in the direction from hind to front legs."""
-    if front is None or hind is None or left is None or right is None:
-        return False
-    ahead, across = front - hind, left - right
-    return float(ahead[0] * across[1] - ahead[1] * across[0]) <= 0
+def _nearest_axis(ahead: FloatArray, axes: Mapping[Axis, float]) -> Axis:
+    angle = math.degrees(math.atan2(ahead[1], ahead[0]))
+    return min(axes, key=lambda name: abs(_wrapped(angle - axes[name])))
+
+
+def _without_names(mounts: FloatArray) -> tuple[FloatArray, str]:
+    """Return a direction to walk in, and why: along two columns of legs, or x."""
+    x, y = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    if not _are_round(mounts) and not _are_columns(mounts, 0) and _are_columns(mounts, 1):
+        return y, "along the two columns of legs, since no name tells"
+    if _asymmetry(mounts, 1) <= _asymmetry(mounts, 0) + 1e-6:
+        return x, "as in most files, since no name tells"
+    return y, "since the legs are symmetric to that axis"
+
+
+def _are_columns(mounts: FloatArray, axis: int) -> bool:
+    """Whether as many legs are on both sides of an axis, each with another one opposite to it."""
+    centred = mounts - (mounts.min(axis=0) + mounts.max(axis=0)) / 2
+    size_m = float(np.abs(centred).max())
+    across = centred[:, 1 - axis]
+    is_apart = bool((np.abs(across) > _APART_SHARE * size_m).all())
+    is_even = 2 * int((across > 0).sum()) == len(mounts)
+    return (
+        is_apart and is_even and _asymmetry(mounts, 1 - axis) < _APART_SHARE * size_m * len(mounts)
+    )
+
+
+def _are_round(mounts: FloatArray) -> bool:
+    """Whether the legs are evenly spaced on a circle, where any direction is as good."""
+    centred = mounts - (mounts.min(axis=0) + mounts.max(axis=0)) / 2
+    radii = np.linalg.norm(centred, axis=1)
+    azimuths = np.sort(np.arctan2(centred[:, 1], centred[:, 0]))
+    gaps = np.diff([*azimuths, azimuths[0] + 2 * np.pi])
+    return bool(np.ptp(radii) < _ROUND_SHARE * radii.max() and np.ptp(gaps) < _ROUND_SHARE)
 
 
 def _chosen(forward: str | float, axes: Mapping[Axis, float], up: Axis) -> float:
@@ -99,22 +114,6 @@ def _chosen(forward: str | float, axes: Mapping[Axis, float], up: Axis) -> float
             f"the file is up; not {quoted(str(forward))}"
         )
     return angle
-
-
-def _mean(mounts: FloatArray, names: Sequence[Sequence[str]], word: str) -> FloatArray | None:
-    """Return the mean place of the legs whose names have a word; None if none have."""
-    other = {"front": "hind", "hind": "front", "left": "right", "right": "left"}[word]
-    named = [_has(words, word) and not _has(words, other) for words in names]
-    return mounts[named].mean(axis=0) if any(named) else None
-
-
-def _has(names: Sequence[str], word: str) -> bool:
-    for name in names:
-        apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
-        words = re.split(r"[^a-z]+", apart)
-        if any(long_word in apart for long_word in _LONG[word]) or _SHORT[word] & {*words}:
-            return True
-    return False
 
 
 def _asymmetry(mounts: FloatArray, mirrored: int) -> float:

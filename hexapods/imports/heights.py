@@ -8,12 +8,12 @@ import numpy as np
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
 from hexapods.imports.chain import PRECISION, LegChain
+from hexapods.imports.reach import FOLLOWING_JOINTS
 
 _STEPS = 25
 """Number of heights that are tried, each higher by this part of the legs' length."""
 _LATERAL_WEIGHT = 0.01
 """With two joints the height of a foot matters, not its place."""
-_FOLLOWING_JOINTS = 3
 
 
 class Heights(NamedTuple):
@@ -97,7 +97,7 @@ def _moved(chain: LegChain, angles: FloatArray, moves: FloatArray) -> tuple[Floa
     """
     down = np.outer(moves, [0, 0, -1])
     targets = chain.feet(np.clip(angles, *chain.limits)[None])[0] + down
-    if len(angles) >= _FOLLOWING_JOINTS:
+    if len(angles) >= FOLLOWING_JOINTS:
         return chain.solve(targets, angles)
     solution, _ = chain.solve(targets, angles, np.array([_LATERAL_WEIGHT, _LATERAL_WEIGHT, 1.0]))
     return solution, np.abs(chain.feet(solution)[:, 2] - targets[:, 2])

@@ -16,9 +16,8 @@ from hexapods.imports.chain import PRECISION, LegChain
 from hexapods.imports.choices import Choices
 from hexapods.imports.heights import Heights, at_height, possible_heights
 from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.reach import FOLLOWING_JOINTS, is_short_of_box
 
-_REACH_SHARE, _LIFT_SHARE = 0.08, 0.12
-"""Least reach of each foot from home, to each side and upward, as shares of its leg's length."""
 _CLEARANCE_SHARE, _LEVEL_SHARE = 0.04, 0.15
 """Least height of the torso over the ground and largest unevenness of the feet, by leg length."""
 _SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
@@ -34,10 +33,10 @@ _UPRIGHT = (0.65, 0.72, 0.58, 0.5, 0.8)
 _ASTRIDE = 1.15
 """Lateral distance of such feet from their mounts, by the hips' offsets; at this none toppled."""
 _POSTURES = len(_UPRIGHT)
+_KNEE_SHARE, _KNEE_COST = 0.03, 10.0
+"""Depth of a knee below the line from hip to foot, of the leg's length, that counts; its cost."""
 _LEAST_UNDER = 0.15
 """Least depth of a foot below the torso, as a share of the leg's length."""
-_FOLLOWING_JOINTS = 3
-"""Number of joints from which on a leg can follow a grid."""
 Angles = list[FloatArray]
 """Joint angles of each leg [rad], each (joints,)."""
 
@@ -108,7 +107,9 @@ def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Stance:
 
 def reaches_grid(robot: RobotWithLegs, angles: Angles) -> bool:
     """Whether each foot reaches its box from a stance."""
-    return not any(_unreached(chain, leg_angles) for chain, leg_angles in _pairs(robot, angles))
+    return not any(
+        is_short_of_box(chain, leg_angles) for chain, leg_angles in _pairs(robot, angles)
+    )
 
 
 def _pairs(robot: RobotWithLegs, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
@@ -162,21 +163,9 @@ def _problem(robot: RobotWithLegs, angles: Angles) -> str | None:
     if robot.torso_bottom_m - bottoms.max() < _CLEARANCE_SHARE * robot.length_m:
         return "the torso would touch the ground"
     for number, (chain, leg_angles) in enumerate(_pairs(robot, angles)):
-        if _unreached(chain, leg_angles):
+        if is_short_of_box(chain, leg_angles):
             return f"the foot after {quoted(robot.names[number][-1])} could hardly move"
     return None
-
-
-def _unreached(chain: LegChain, angles: FloatArray) -> bool:
-    """Whether a foot does not reach its box; False for legs of two joints, which reach no box."""
-    if len(angles) < _FOLLOWING_JOINTS:
-        return False
-    angles = np.clip(angles, *chain.limits)
-    corners = [(x * _REACH_SHARE, y * _REACH_SHARE, 0) for x in (-1, 1) for y in (-1, 1)]
-    shares = np.array([*corners, (0, 0, _LIFT_SHARE)])
-    targets = chain.feet(angles[None])[0] + chain.length_m * shares
-    _, off = chain.solve(targets, angles)
-    return bool((off > PRECISION * chain.length_m).any())
 
 
 def _level(robot: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
@@ -237,28 +226,51 @@ def _changed(robot: RobotWithLegs, angles: Angles, chosen: Mapping[str, float]) 
 def search(robot: RobotWithLegs) -> Angles:
     """Return a stance with bent knees, symmetric for legs that mirror each other.
 
-    Of several postures it is the first from which all feet reach their boxes, or most feet.
+    Of several postures it is the first from which all feet reach their boxes, or most feet. Knees
+    of legs that point outward are above the line from the hip to the foot, if the limits allow it
+    without a loss of reach.
     """
+    stance, unreached = _most_reaching(robot, knees_up=False)
+    if _knees_down(robot, stance):
+        other, unreached_then = _most_reaching(robot, knees_up=True)
+        if unreached_then <= unreached and not _knees_down(robot, other):
+            return other
+    return stance
+
+
+def _most_reaching(robot: RobotWithLegs, *, knees_up: bool) -> tuple[Angles, int]:
+    """Return the posture from which most feet reach their boxes, and how many do not."""
     fewest, stance = len(robot.chains) + 1, list[FloatArray]()
     for lower in range(_POSTURES):
-        angles = _posture(robot, lower)
+        angles = _posture(robot, lower, knees_up=knees_up)
         pairs = _pairs(robot, angles)
-        unreached = sum(_unreached(chain, at_rad) for chain, at_rad in pairs)  # whole numbers
+        unreached = sum(is_short_of_box(chain, at_rad) for chain, at_rad in pairs)  # whole numbers
         if unreached < fewest:
             fewest, stance = unreached, angles
         if not unreached:
             break
-    return stance
+    return stance, fewest
 
 
-def _posture(robot: RobotWithLegs, number: int) -> Angles:
+def _knees_down(robot: RobotWithLegs, angles: Angles) -> bool:
+    """Whether a leg that points outward has its knee below the line from its hip to its foot."""
+    for chain, at_rad in _pairs(robot, angles):
+        out = chain.feet(at_rad[None])[0] - chain.anchors[0]
+        height_m = float(chain.knee_heights_m(at_rad[None])[0])
+        is_outward = np.hypot(*out[:2]) > _SPRAWLING * chain.length_m
+        if is_outward and height_m < -_KNEE_SHARE * chain.length_m:
+            return True
+    return False
+
+
+def _posture(robot: RobotWithLegs, number: int, *, knees_up: bool) -> Angles:
     rng = np.random.default_rng(0)
     first: FloatArray | None = None
     posture = []
     for chain in robot.chains:
         is_alike = first is not None and len(first) == len(chain.axes)
         wanted = _wanted(chain, robot.torso_bottom_m, number)
-        best = _best(chain, wanted, first if is_alike else None, rng)
+        best = _best(chain, wanted, first if is_alike else None, rng, knees_up=knees_up)
         first = best if first is None else first
         posture.append(best)
     return posture
@@ -288,17 +300,27 @@ def _wanted(chain: LegChain, torso_bottom_m: float, number: int) -> FloatArray:
 
 
 def _best(
-    chain: LegChain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
+    chain: LegChain,
+    wanted: FloatArray,
+    like: FloatArray | None,
+    rng: np.random.Generator,
+    *,
+    knees_up: bool,
 ) -> FloatArray:
     """Return the angles of least cost: many at random, then nearer and nearer to the best."""
     low, high = np.clip(chain.limits, -_WITHOUT_LIMIT_RAD, _WITHOUT_LIMIT_RAD)
     angles = rng.uniform(low, high, (_SAMPLES, len(low)))
-    best: FloatArray = angles[int(_costs(chain, angles, wanted, like).argmin())]
+
+    def costs(angles: FloatArray) -> FloatArray:
+        below = np.maximum(0, -chain.knee_heights_m(angles) / chain.length_m) if knees_up else 0
+        return _costs(chain, angles, wanted, like) + _KNEE_COST * below
+
+    best: FloatArray = angles[int(costs(angles).argmin())]
     spread = 0.25
     for _ in range(_ROUNDS):
         near = best + rng.normal(0, spread, (_NEAR, len(low)))
         near = np.concatenate([best[None], np.clip(near, low, high)])
-        best = near[int(_costs(chain, near, wanted, like).argmin())]
+        best = near[int(costs(near).argmin())]
         spread *= 0.4
     return best
 
@@ -314,7 +336,7 @@ def _costs(
     length_m = chain.length_m
     feet = (chain.feet(angles) - chain.anchors[0]) / length_m
     costs: FloatArray = 3 * ((feet - wanted) ** 2).sum(axis=1)
-    if angles.shape[1] >= _FOLLOWING_JOINTS:
+    if angles.shape[1] >= FOLLOWING_JOINTS:
         least = np.linalg.svd(chain.jacobians(angles) / length_m, compute_uv=False)[:, 2]
         costs += 4 * np.maximum(0, 0.25 - least) ** 2
     low, high = chain.limits
