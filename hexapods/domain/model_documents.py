@@ -19,12 +19,23 @@ _LARGEST = 1e6
 def model_content(robot: ModelRobot) -> dict[str, Any]:
     """Return a robot from a file by value: its model, and the fields that were derived from it."""
     return {
-        "model": to_json(robot.model),
+        "model": _without_defaults(to_json(robot.model)),
         "robot": {
             **{name: float(getattr(robot, name)) for name in NUMBERS},
             "legs": [{name: asdict(leg)[name] for name in _LEG} for leg in robot.legs],
         },
     }
+
+
+def _without_defaults(model: dict[str, Any]) -> dict[str, Any]:
+    """Leave out numbers that documents lacked when the first robots were stored.
+
+    The id of a robot is that of its document: with a friction of 0 it stays the same.
+    """
+    for link in model["links"]:
+        if link["joint"] is not None and link["joint"]["friction_nm"] == 0:
+            del link["joint"]["friction_nm"]
+    return model
 
 
 def read_model_content(content: Mapping[str, Any]) -> ModelRobot:

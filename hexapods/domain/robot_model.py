@@ -113,6 +113,7 @@ class ModelJoint(Record):
         servo_torque_nm: the largest torque.
         armature: rotor inertia reflected to the joint [kg·m²].
         damping: [N·m·s/rad].
+        friction_nm: dry friction, which the servo must overcome to turn the joint.
     """
 
     name: str
@@ -125,6 +126,7 @@ class ModelJoint(Record):
     servo_torque_nm: float
     armature: float
     damping: float
+    friction_nm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -319,7 +321,8 @@ def _problems_of_joint(joint: ModelJoint) -> Iterator[str]:
     if not (_is_unit(joint.axis) and _are_finite(joint.anchor_m)):
         yield f"has a joint {joint.name} without an axis"
     numbers = joint.servo_kp, joint.servo_kv, joint.servo_torque_nm, joint.armature
-    if not (_are_finite((*numbers, joint.damping)) and min(numbers) > 0 <= joint.damping):
+    losses = joint.damping, joint.friction_nm
+    if not (_are_finite((*numbers, *losses)) and min(numbers) > 0 <= min(losses)):
         yield f"has a joint {joint.name} whose servo has no strength"
 
 

@@ -7,8 +7,7 @@ child `reading` goes through the steps:
 - `upload` unpacks; `xml` reads the document within bounds; `mjcf` and `urdf` keep of it what
   describes a body; `mesh_files`, `collada` and `decimation` read and simplify meshes.
 - `compiling` has MuJoCo turn it into numbers, in the `units` of the file and without
-  `incomplete_shapes`; `posed_robot` is the
-  robot with all joints at 0.
+  `incomplete_shapes`; `posed_robot` is the robot with all joints at 0.
 - `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward, by
   the names of `sides`, and numbers the legs; `stance` finds how it stands, by the kinematics of
   `chain` and `reach`, `heights` how high it could; `joint_kinds` names the joints; `masses` and

@@ -318,6 +318,7 @@ class _Builder:
             servo.torque_nm,
             servo.armature,
             servo.damping,
+            servo.friction_nm,
         )
 
     def _shapes_of(

@@ -108,7 +108,15 @@ def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
 
 
 def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
-    """Tell of tendons and equality constraints, which are left out."""
+    """Tell of tendons, equality constraints and springs of joints, which are left out."""
+    springs = [joint for joint in root.all("joint") if _has_spring(joint)]
+    if springs:
+        joints = _names(springs, "name", "class")
+        notes.repair(
+            "joints",
+            f"springs of joints are left out: {listed(joints) or 'those by default'}",
+            parts=joints,
+        )
     mechanisms = [
         element for section in root if section.tag in ("equality", "tendon") for element in section
     ]
@@ -131,6 +139,10 @@ def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
             "each joint gets a servo of its own",
             parts=[*_names(connecting, "body1", "body2"), *_names(jointed, "joint")],
         )
+
+
+def _has_spring(joint: Element) -> bool:
+    return any(word.strip("0.") for word in joint.attributes.get("stiffness", "").split())
 
 
 def _names(elements: Iterable[Element], *attributes: str) -> list[str]:

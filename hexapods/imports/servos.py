@@ -4,8 +4,9 @@ Whatever turned the joints in the file, here each has a position servo that give
 at an error of 0.05 rad.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from hexapods.domain.text import counted
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.notes import Notes
+from hexapods.imports.notes import Notes, quoted
 
 _FULL_TORQUE_RAD = 0.05
 _KV_SHARE = 0.025
@@ -21,6 +22,8 @@ _KV_SHARE = 0.025
 _ARMATURE_SHARE = 0.001
 """Least armature by torque limit; with less, stiff servos make standing feet creep."""
 _NO_LIMIT_NM, _UNLIKELY_RATIO = 1000.0, 200.0
+_USUAL_RAD_S = 2.5
+"""Speed of a joint in a step, at which a servo must overcome the joint's damping."""
 _GRAVITY = 9.81
 _ARM_SHARE = 0.6
 _WIDEST_RAD = 7.0
@@ -38,6 +41,7 @@ class FoundServo:
     kv: float
     armature: float
     damping: float
+    friction_nm: float
 
 
 def angle_limits(compiled: Compiled, joint: int) -> tuple[float, float] | None:
@@ -74,40 +78,100 @@ def find_servos(
         choices: what a person decided.
         notes: gets what is guessed and repaired.
     """
-    torques = {joint: _torque(compiled.model, joint) for joint in joints}
-    without = [joint for joint, torque in torques.items() if not _is_likely(torque, guess_nm)]
-    if choices.servo_torque_nm is None and without:
-        which = "all joints" if len(without) == len(joints) else counted(len(without), "joint")
-        notes.guess(
-            "servos",
-            f"the largest torque of {which} is {guess_nm:.3g} N·m, by the robot's mass and size: "
-            "the file gives none that is likely",
-        )
+    model = compiled.model
+    torques = {joint: _torque(model, joint) for joint in joints}
+    losses = {joint: _losses(model, joint) for joint in joints}
+    guessed = {
+        joint: guess_nm + losses[joint].at_speed_nm
+        for joint, torque in torques.items()
+        if not _is_likely(torque, guess_nm)
+    }
+    if choices.servo_torque_nm is None:
+        _tell_of_torques(compiled, joints, guessed, guess_nm, notes)
     servos, raised = {}, 0
     for joint in joints:
-        file_nm = torques[joint]
-        torque = choices.servo_torque_nm
-        if torque is None:
-            torque = guess_nm if joint in without or file_nm is None else file_nm
+        torque = choices.servo_torque_nm or guessed.get(joint) or torques[joint] or guess_nm
         kp = choices.servo_kp or torque / _FULL_TORQUE_RAD
-        dof = int(compiled.model.jnt_dofadr[joint])
-        armature = float(compiled.model.dof_armature[dof])
+        armature = float(model.dof_armature[int(model.jnt_dofadr[joint])])
         raised += armature < _ARMATURE_SHARE * torque
         servos[joint] = FoundServo(
             torque,
             kp,
             choices.servo_kv or _KV_SHARE * kp,
             max(armature, _ARMATURE_SHARE * torque),
-            max(float(compiled.model.dof_damping[dof].max()), 0.0),
+            losses[joint].damping,
+            losses[joint].friction_nm,
         )
+    _tell_of_weak_servos(compiled, servos, notes)
     if raised:
         notes.repair(
             "servos",
             f"the armature of {counted(raised, 'joint')} was raised to {_ARMATURE_SHARE:g} of the "
             "torque limit: with less, stiff servos make standing feet creep",
         )
-    _tell_of_actuators(compiled.model, joints, notes)
+    _tell_of_actuators(model, joints, notes)
     return servos
+
+
+class _Losses(NamedTuple):
+    """Damping [N·m·s/rad] and dry friction of a joint."""
+
+    damping: float
+    friction_nm: float
+
+    @property
+    def at_speed_nm(self) -> float:
+        """Torque that both take while the joint turns as in a step."""
+        return self.friction_nm + _USUAL_RAD_S * self.damping
+
+
+def _losses(model: mujoco.MjModel, joint: int) -> _Losses:
+    dof = int(model.jnt_dofadr[joint])
+    damping, friction_nm = model.dof_damping[dof].max(), model.dof_frictionloss[dof].max()
+    return _Losses(max(float(damping), 0.0), max(float(friction_nm), 0.0))
+
+
+def _tell_of_torques(
+    compiled: Compiled,
+    joints: Sequence[int],
+    guessed: Mapping[int, float],
+    guess_nm: float,
+    notes: Notes,
+) -> None:
+    if not guessed:
+        return
+    which = "all joints" if len(guessed) == len(joints) else counted(len(guessed), "joint")
+    least, most = min(guessed.values()), max(guessed.values())
+    how_large = f"{most:.3g}" if f"{least:.3g}" == f"{most:.3g}" else f"{least:.3g} to {most:.3g}"
+    is_lossy = most > guess_nm
+    notes.guess(
+        "servos",
+        f"the largest torque of {which} is {how_large} N·m, by the robot's mass and size"
+        f"{', and the damping and friction of its joints' if is_lossy else ''}: the file gives "
+        "none that is likely",
+        map(compiled.joint_name, guessed),
+    )
+
+
+def _tell_of_weak_servos(
+    compiled: Compiled, servos: Mapping[int, FoundServo], notes: Notes
+) -> None:
+    """Tell of servos that can hardly turn their joints against damping and friction."""
+    needs = {joint: _losses(compiled.model, joint).at_speed_nm for joint in servos}
+    weak = [joint for joint, servo in servos.items() if servo.torque_nm < needs[joint]]
+    if not weak:
+        return
+    joint = max(weak, key=lambda joint: needs[joint] / servos[joint].torque_nm)
+    servo = servos[joint]
+    enough_nm = float(f"{2 * max(needs[joint] for joint in weak):.2g}")
+    notes.guess(
+        "servos",
+        f"{counted(len(weak), 'servo')} can hardly move: {quoted(compiled.joint_name(joint))} has "
+        f"at most {servo.torque_nm:.3g} N·m against a damping of {servo.damping:.3g} N·m·s/rad and "
+        f"a friction of {servo.friction_nm:.3g} N·m",
+        map(compiled.joint_name, weak),
+        Choices(servo_torque_nm=enough_nm),
+    )
 
 
 def _is_likely(torque_nm: float | None, guess_nm: float) -> bool:

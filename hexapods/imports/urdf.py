@@ -33,7 +33,7 @@ _ATTRIBUTES: dict[str, frozenset[str]] = {
     "child": frozenset({"link"}),
     "axis": frozenset({"xyz"}),
     "limit": frozenset({"lower", "upper", "effort"}),
-    "dynamics": frozenset({"damping"}),
+    "dynamics": frozenset({"damping", "friction"}),
 }
 _TEXTS = frozenset({"name", "filename", "type", "link"})
 _MAY_REPEAT = frozenset({"link", "joint", "visual", "collision"})

@@ -136,6 +136,7 @@ def _add_joint(body: mujoco.MjsBody, name: str, joint: ModelJoint) -> None:
         range=joint.limits_rad,
         limited=True,
         armature=joint.armature,
+        frictionloss=joint.friction_nm,
     )
     added.damping = np.array([joint.damping, 0, 0])[: np.size(added.damping)]
 

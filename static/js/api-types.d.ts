@@ -563,7 +563,23 @@ export interface ChoicesOutput {
    */
   file: string | null;
   /**
-   * direction in which it walks, in the frame of its torso in the file: `x`, `-x`, `y`, `-y`, or an angle anticlockwise from x [°].
+   * factor of all lengths of the file; 0.001 reads millimetres. Inertias change with its square, and masses that follow from densities with its cube; masses and torques that the file gives stay.
+   */
+  scale: number | null;
+  /**
+   * axis of the file that points up; z unless told otherwise.
+   */
+  up: ("x" | "-x" | "y" | "-y" | "z" | "-z") | null;
+  /**
+   * unit of the limits of joints in the file.
+   */
+  angle_unit: ("rad" | "deg") | null;
+  /**
+   * mass of the whole robot; those of its links keep their ratios.
+   */
+  mass_kg: number | null;
+  /**
+   * direction in which it walks, in the frame of its torso in the file: a horizontal axis, such as `x`, `-x`, `y` or `-y`; or an angle anticlockwise from x, seen from above; from y where x or -x is up [°].
    */
   forward: string | number | null;
   /**
@@ -574,6 +590,10 @@ export interface ChoicesOutput {
    * name of the keyframe of the file in which it stands.
    */
   keyframe: string | null;
+  /**
+   * height of the torso's centre above the centres of the feet, with which it stands.
+   */
+  body_height_m: number | null;
   /**
    * angles of joints with which it stands, by their names in the file [rad]; each is as given, the others are as found.
    */
