@@ -3926,6 +3926,10 @@ export interface ReadRobot {
    */
   body_height_m: number;
   /**
+   * lowest and highest one that its legs allow; null if it cannot be changed.
+   */
+  body_heights_m: [number, number] | null;
+  /**
    * names of the file's keyframes.
    */
   keyframes: string[];

@@ -41,6 +41,7 @@ class ReadRobot(Answer):
         groups: legs of each group of this gait.
         forward_deg: direction in which it walks, anticlockwise from x of its torso in the file.
         body_height_m: height of the torso's centre above the centres of the feet.
+        body_heights_m: lowest and highest one that its legs allow; null if it cannot be changed.
         keyframes: names of the file's keyframes.
         reaches_grid: whether its feet reach a foot grid that suits its size.
     """
@@ -52,6 +53,7 @@ class ReadRobot(Answer):
     forward_deg: float
     mass_kg: float
     body_height_m: float
+    body_heights_m: tuple[float, float] | None
     keyframes: list[str]
     reaches_grid: bool
 
@@ -145,6 +147,7 @@ def body_view(body: Robot, spec: AnyGait) -> RobotReadingView:
             forward_deg=gait.forward_deg,
             mass_kg=body.torso_kg + ordered_sum(legs.masses_kg),
             body_height_m=body.body_height_m,
+            body_heights_m=None,
             keyframes=[],
             reaches_grid=True,
         ),
@@ -170,6 +173,7 @@ def _read_robot(imported: ImportedRobot) -> ReadRobot:
         forward_deg=imported.forward_deg,
         mass_kg=imported.mass_kg,
         body_height_m=imported.body_height_m,
+        body_heights_m=imported.body_heights_m,
         keyframes=list(imported.keyframes),
         reaches_grid=imported.reaches_grid,
     )
