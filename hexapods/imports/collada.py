@@ -146,11 +146,19 @@ def _corners(polygons: Element) -> IntArray:
     flat = np.concatenate(lists)
     if sizes.min(initial=3) < 0 or sizes.sum() > len(flat):
         raise ValueError("its polygons have more corners than there are")
-    return _fans(flat, sizes)
+    return cut_polygons(flat, sizes)
 
 
-def _fans(flat: IntArray, sizes: IntArray) -> IntArray:
-    """Cut polygons, whose corners follow each other, into triangles that share the first corner."""
+def cut_polygons(flat: IntArray, sizes: IntArray) -> IntArray:
+    """Cut polygons into triangles that share the first corner.
+
+    Args:
+        flat: corners of all polygons in a row, (n,).
+        sizes: number of corners of each, (m,).
+
+    Returns:
+        corners of triangles, (k, 3).
+    """
     starts = np.cumsum(sizes) - sizes
     inner = np.maximum(sizes - 2, 0).astype(np.intp)
     first = np.repeat(starts, inner)

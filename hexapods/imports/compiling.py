@@ -1,7 +1,6 @@
 """Compile a cleaned document with MuJoCo, and repair what its compiler refuses."""
 
 import re
-from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -13,6 +12,7 @@ from hexapods.imports.incomplete_shapes import (
     drop_sizeless_shapes,
     tell_of_bare_ends,
 )
+from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.units import rescale, rescale_keyframes
 from hexapods.imports.xml import Document
@@ -22,6 +22,8 @@ LEAST_KG, _LEAST_INERTIA = 1e-6, 1e-9
 _ATTEMPTS = 6
 _LINE = re.compile(r"line (\d+)")
 _ELEMENT_NAME = re.compile(r"Element name '([^']*)'")
+_OF_MESH = re.compile(r"mesh|vert|face|volume|STL|OBJ", re.IGNORECASE)
+"""Words in complaints about meshes."""
 _EIGENVALUE_RATIO = 1e-9
 
 
@@ -65,43 +67,47 @@ def silence_mujoco() -> None:
 
 
 def compile_document(
-    document: Document,
-    assets: Mapping[str, bytes],
-    undrawn: Collection[str],
-    notes: Notes,
-    scale: float | None = None,
+    document: Document, meshes: MeshFiles, notes: Notes, scale: float | None = None
 ) -> Compiled:
     """Compile a cleaned document.
 
     Args:
         document: the document.
-        assets: its meshes, by the names that it has for them.
-        undrawn: names of bodies of which a mesh is missing.
+        meshes: its meshes.
         notes: gets the repairs.
         scale: factor of all lengths.
 
     Raises:
         DamagedFile: if MuJoCo refuses it, naming element and line.
+        MemoryError: if it takes too much memory.
     """
     try:
-        spec = mujoco.MjSpec.from_string(document.text, assets=dict(assets))
+        spec = mujoco.MjSpec.from_string(document.text, assets=dict(meshes.assets))
     except ValueError as error:
         raise _refused(error, document) from error
+    except RuntimeError as error:
+        raise _out_of_memory(error) from error
     if scale is not None:
         rescale(spec, scale)
     _mend_inertias(spec, notes)
     named = frozenset(geom.name for geom in spec.geoms if geom.name)
     _name_all(spec)
-    undrawn = {*undrawn, *drop_shapes_of_missing_meshes(spec)}
+    undrawn = {*meshes.undrawn, *drop_shapes_of_missing_meshes(spec)}
     drop_sizeless_shapes(spec, notes)
-    tell_of_bare_ends(spec, undrawn, notes)
     _spare_volumes(spec)
     collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
     for geom in spec.geoms:
         # Then the convex hulls of meshes are not computed.
         geom.contype = geom.conaffinity = 0
     collides_by_name = {geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)}
-    model = _compile(spec, document, notes)
+    while True:
+        try:
+            model = _compile(spec, document, notes)
+            break
+        except _UnreadableMesh as error:
+            meshes.drop(error.file, error.why)
+            undrawn |= drop_shapes_of_missing_meshes(spec)
+    tell_of_bare_ends(spec, undrawn, notes)
     if scale is not None:
         rescale_keyframes(model, scale)
     return Compiled(
@@ -118,7 +124,10 @@ def _compile(spec: mujoco.MjSpec, document: Document, notes: Notes) -> mujoco.Mj
             return spec.compile()
         except ValueError as error:
             if not _repaired(spec, str(error).lower(), notes):
+                _delete_mesh(spec, error)
                 raise _refused(error, document) from error
+        except RuntimeError as error:
+            raise _out_of_memory(error) from error
     raise DamagedFile("MuJoCo cannot compile it, even after several repairs")
 
 
@@ -142,6 +151,31 @@ def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
         notes.repair("stance", "keyframes do not fit the joints, and were left out")
         return True
     return False
+
+
+class _UnreadableMesh(Exception):
+    """A mesh that MuJoCo refuses, and that was deleted from the model."""
+
+    def __init__(self, file: str, why: str) -> None:
+        super().__init__(why)
+        self.file, self.why = file, why
+
+
+def _delete_mesh(spec: mujoco.MjSpec, error: ValueError) -> None:
+    """Delete the mesh that MuJoCo complains about, if it is one.
+
+    Raises:
+        _UnreadableMesh: if it was one.
+    """
+    problem = str(error)
+    name_match = _ELEMENT_NAME.search(problem)
+    if name_match is None or not _OF_MESH.search(problem):
+        return
+    for mesh in spec.meshes:
+        if mesh.name == name_match[1] and mesh.file:
+            file = mesh.file
+            spec.delete(mesh)
+            raise _UnreadableMesh(file, _complaint(error))
 
 
 _SHELL = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
@@ -218,14 +252,18 @@ def _refused(error: ValueError, document: Document) -> DamagedFile:
     text = str(error)
     line_match, name_match = _LINE.search(text), _ELEMENT_NAME.search(text)
     line = document.original_line(int(line_match[1])) if line_match else None
-    why = (
-        re.sub(r"^(XML )?Error: ?", "", text.split("\nElement", maxsplit=1)[0]).strip().rstrip(".")
-    )
     place = f" in line {line}" if line else ""
     name = f" ({quoted(name_match[1])})" if name_match and name_match[1] else ""
-    return DamagedFile(f"MuJoCo refuses the file{place}{name}: {_in_one_line(why)}")
+    return DamagedFile(f"MuJoCo refuses the file{place}{name}: {_complaint(error)}")
 
 
-def _in_one_line(why: str) -> str:
-    line = " ".join(why.split())
+def _out_of_memory(error: RuntimeError) -> Exception:
+    """Return what MuJoCo's error means: it calls each failed allocation unknown."""
+    return MemoryError() if "unknown exception" in str(error).lower() else error
+
+
+def _complaint(error: ValueError) -> str:
+    """Return what MuJoCo says, in one line without the place."""
+    text = str(error).split("\nElement", maxsplit=1)[0]
+    line = " ".join(re.sub(r"^(XML )?Error: ?", "", text).strip().rstrip(".").split())
     return line if len(line) <= 200 else f"{line[:199]}…"

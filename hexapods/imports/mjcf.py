@@ -242,6 +242,12 @@ def _check_counts(root: Element) -> None:
 
 def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles) -> None:
     """Give meshes their names in the assets, and remove those that are missing."""
+
+    def path_of(mesh: Element) -> str:
+        path = mesh.attributes["file"]
+        return posixpath.join(folder, last_part(path) if strips else path)
+
+    meshes.expect(path_of(mesh) for mesh in root.all("mesh") if "file" in mesh.attributes)
     for asset in root.all("asset"):
         present = []
         for mesh in asset:
@@ -249,8 +255,7 @@ def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles)
             if wanted is not None:
                 stem = posixpath.splitext(last_part(wanted))[0]
                 mesh.attributes.setdefault("name", stem)
-                path = last_part(wanted) if strips else wanted
-                name = meshes.add(posixpath.join(folder, path))
+                name = meshes.add(path_of(mesh), is_copied=True)
                 if name is None:
                     continue
                 mesh.attributes["file"] = name

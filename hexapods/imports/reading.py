@@ -8,7 +8,7 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.text import MAX_NAME, visible
 from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
-from hexapods.imports.compiling import compile_document
+from hexapods.imports.compiling import Compiled, compile_document
 from hexapods.imports.imported import RobotReading
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import clean_mjcf
@@ -44,13 +44,8 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
         clean_mjcf(root, meshes, notes)
     else:
         clean_urdf(root, meshes, notes)
-    meshes.tell()
-    try:
-        compiled = compile_document(
-            write_xml(root), meshes.assets, meshes.undrawn, notes, choices.scale
-        )
-    except DamagedFile as error:
-        raise DamagedFile(meshes.with_missing(str(error))) from error
+    compiled = _compiled(root, meshes, notes, choices.scale)
+    meshes.tell(compiled.undrawn)
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
     origin = FileOrigin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
@@ -59,6 +54,20 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
     except InvalidInput as error:
         robot, problem = None, meshes.with_missing(str(error))
     return RobotReading(robot, problem, notes.collected(), sketch_robot(compiled, robot))
+
+
+def _compiled(root: Element, meshes: MeshFiles, notes: Notes, scale: float | None) -> Compiled:
+    """Compile a cleaned document, with simpler meshes if the memory is not enough."""
+    document = write_xml(root)
+    try:
+        try:
+            return compile_document(document, meshes, notes, scale)
+        except MemoryError:
+            if not meshes.simplify():
+                raise
+        return compile_document(document, meshes, notes, scale)
+    except DamagedFile as error:
+        raise DamagedFile(meshes.with_missing(str(error))) from error
 
 
 def _name(named: str, path: str) -> str:

@@ -296,6 +296,7 @@ def _check_acyclic(joint_above: Mapping[str, Element]) -> None:
 
 def _resolve_shapes(root: Element, meshes: MeshFiles) -> None:
     """Give meshes their names in the assets, and remove shapes that cannot be read."""
+    meshes.expect(mesh.attributes.get("filename", "") for mesh in root.all("mesh"))
     for link in root.all("link"):
         readable = []
         for child in link:

@@ -98,4 +98,4 @@ def test_a_robot_is_drawn_by_them() -> None:
 
     vertices, _ = decoded(robot.model.links[0].mesh)
     assert np.ptp(vertices, axis=0) == pytest.approx([0.5, 1, 0], abs=1e-6)
-    assert mentions(damaged.repairs, "a mesh was left out: hull.dae has no triangles")
+    assert mentions(damaged.repairs, "1 mesh is left out as damaged: hull.dae (it has no triangles")

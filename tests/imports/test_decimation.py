@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hexapods.domain.types import FloatArray, IntArray
+from hexapods.imports import decimation
 from hexapods.imports.decimation import cluster
 from tests.imports.robots import box_triangles
 
@@ -55,3 +56,15 @@ def test_points_in_one_place_do_not_matter() -> None:
 
     assert len(kept_faces) == 0
     assert len(fewer) == 0
+
+
+def test_a_grid_that_is_too_fine_to_be_counted_makes_the_same() -> None:
+    vertices, faces = as_mesh(box_triangles((2, 1, 0.5), cells=40))
+
+    with pytest.MonkeyPatch.context() as patch:
+        counted = cluster(vertices, faces, 500)
+        patch.setattr(decimation, "_MOST_COUNTED", 0)
+        sorted_ = cluster(vertices, faces, 500)
+
+    assert (counted[0] == sorted_[0]).all()
+    assert (counted[1] == sorted_[1]).all()
