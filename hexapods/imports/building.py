@@ -24,6 +24,7 @@ from hexapods.imports.drawing import find_meshes
 from hexapods.imports.heights import body_height_m
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.joint_kinds import joint_kinds
+from hexapods.imports.link_limits import checked_model
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
 from hexapods.imports.posed_robot import PosedRobot, initial_pose, keyframes_of
@@ -301,7 +302,7 @@ class _Builder:
             feet.append(
                 ModelFoot(parent, _vector(chain.foot - parent_at), float(leg.foot.radius_m))
             )
-        return RobotModel(tuple(links), tuple(feet))
+        return checked_model(links, feet)
 
     def _joint(
         self, joint: int, name: str, axis: FloatArray, home_rad: float, servo: FoundServo

@@ -14,7 +14,7 @@ from hexapods.imports.incomplete_shapes import (
 )
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.notes import Notes, listed, quoted
-from hexapods.imports.units import rescale, rescale_keyframes
+from hexapods.imports.units import rescale, rescale_keyframes, scale_meshes_in_millimetres
 from hexapods.imports.xml import Document
 
 LEAST_KG, _LEAST_INERTIA = 1e-6, 1e-9
@@ -93,6 +93,7 @@ def compile_document(
     named = frozenset(geom.name for geom in spec.geoms if geom.name)
     _name_all(spec)
     undrawn = {*meshes.undrawn, *drop_shapes_of_missing_meshes(spec)}
+    scale_meshes_in_millimetres(spec, meshes.sides, notes)
     drop_sizeless_shapes(spec, notes)
     _spare_volumes(spec)
     collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]

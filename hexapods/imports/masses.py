@@ -87,7 +87,8 @@ def find_masses(
     for joint in unknown:
         of_shapes = by_shapes[joint]
         kg = _SHARE * (known_kg + shaped_kg)
-        masses[joint] = of_shapes or _ball(kg, ends[joint].mean(axis=0), ends[joint])
+        ball = _ball(max(kg, LEAST_KG), ends[joint].mean(axis=0), ends[joint])
+        masses[joint] = ball if of_shapes is None or of_shapes.kg < LEAST_KG else of_shapes
     for joint in between:
         masses[joint] = Mass(LEAST_KG, ends[joint][0], np.eye(3) * _LEAST_INERTIA)
     _tell(

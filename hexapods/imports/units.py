@@ -1,12 +1,15 @@
 """Units and axes of a file where they are not metres, radians, and z up."""
 
+from collections.abc import Mapping
 from typing import get_args
 
 import mujoco
 import numpy as np
 
+from hexapods.domain.robot_model import MAX_SIZE_M
 from hexapods.domain.types import FloatArray
 from hexapods.imports.choices import Axis, Choices
+from hexapods.imports.notes import Notes
 
 _UP: dict[Axis, FloatArray] = {
     "z": np.eye(3),
@@ -60,6 +63,45 @@ def rescale(spec: mujoco.MjSpec, scale: float) -> None:
         joint.pos = joint.pos * scale
         if int(joint.type) == _SLIDE:
             joint.range, joint.ref = joint.range * scale, joint.ref * scale
+
+
+def scale_meshes_in_millimetres(
+    spec: mujoco.MjSpec, sides: Mapping[str, float], notes: Notes
+) -> None:
+    """Scale meshes by 0.001 that are far larger than a robot can be, while its joints are not.
+
+    All meshes with the same scale in the file were written by the same program, so that small ones
+    of them are scaled as well.
+
+    Args:
+        spec: the model, which is changed.
+        sides: longest side of each mesh file, by its name in the model.
+        notes: gets the guess.
+    """
+    reach_m = max((float(np.abs(body.pos).max()) for body in spec.bodies), default=0.0)
+    if reach_m > MAX_SIZE_M / 2:
+        return
+    largest: dict[tuple[float, ...], float] = {}
+    for mesh in spec.meshes:
+        scale = tuple(np.abs(mesh.scale).tolist())
+        side_m = sides.get(mesh.file, 0.0) * max(scale)
+        largest[scale] = max(largest.get(scale, 0.0), side_m)
+    scales = {scale for scale, side_m in largest.items() if side_m > MAX_SIZE_M}
+    scaled = set()
+    for mesh in spec.meshes:
+        if tuple(np.abs(mesh.scale).tolist()) in scales:
+            mesh.scale = 0.001 * mesh.scale
+            scaled.add(mesh.name)
+    if scaled:
+        bodies = [geom.parent.name for geom in spec.geoms if geom.meshname in scaled]
+        side_m = max(largest[scale] for scale in scales)
+        notes.guess(
+            "size",
+            f"meshes are up to {side_m:,.4g} m large, far more than from joint to joint "
+            f"({reach_m:.2g} m), and were read in millimetres: "
+            'scale="0.001 0.001 0.001" on <mesh> says so',
+            parts=list(dict.fromkeys(bodies)),
+        )
 
 
 def rescale_keyframes(model: mujoco.MjModel, scale: float) -> None:
