@@ -27,7 +27,6 @@ from typing import Any
 import hexapods as hx
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import resolve
-from hexapods.domain.model_robot import model_robot
 from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.child import inspect_robot_file
 from hexapods.imports.choices import Choices
@@ -93,7 +92,7 @@ def _print(named: str, robot: ImportedRobot, size: int, took_s: float) -> None:
 
 
 def _walk(imported: ImportedRobot) -> None:
-    robot = model_robot(imported.model, imported.name)
+    robot = imported.robot(imported.name)
     side_m = usual_grid_side_m(robot, imported.gait)
 
     def distance_m(agent: str, steps: int) -> float:
@@ -169,7 +168,7 @@ def _measured(named: str, *, walks: bool) -> dict[str, Any]:
 
 def _share_of_law(imported: ImportedRobot) -> float | str:
     """Return the distance that greedy walks as a share of the law, or why it does not walk."""
-    robot = model_robot(imported.model, imported.name)
+    robot = imported.robot(imported.name)
     gait = resolve(imported.gait, robot.azimuths_deg)
     try:
         side_m = usual_grid_side_m(robot, imported.gait)

@@ -16,7 +16,7 @@ from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.model_robot import ModelRobot, model_robot
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import check_kept
 from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
 from hexapods.domain.robot_library import RobotLibrary
@@ -197,7 +197,7 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
     data, file_name = read_robot_path(path)
     stem = Path(file_name).stem
     if path.suffix.lower() != ".json":
-        data = document_of(model_robot(read_robot_file(data, file_name).model, stem))
+        data = document_of(read_robot_file(data, file_name).robot(stem))
     return read_document(data, name or stem[:MAX_NAME])
 
 

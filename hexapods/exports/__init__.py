@@ -14,5 +14,7 @@
 - `servo_map`, `servo_map_file`, `servo_walk`, `servo_files`: a walk as pulses of a real robot's
   servos. It needs a map of them, which no request has, so it is no format of the registry. To add a
   map: a file in `servo_maps`, named in `BUILT_IN_MAPS` of `servo_map`.
-- `robot_model`: a robot as a model for MuJoCo; `mjcf_text`: how that is written; `xml_text`: XML.
+- `robot_files`: types of file that a robot is exported as. `robot_model`: MJCF, as `mjcf_text`
+  writes it; `urdf`: URDF, with meshes in a zip; `exported_settings`: what both say to be read back;
+  `xml_text`: numbers and names in XML.
 """

@@ -46,7 +46,7 @@ def mjcf_text(
     spec: mujoco.MjSpec,
     name: str,
     keyframes: Mapping[str, tuple[FloatArray, FloatArray]],
-    custom: Mapping[str, str],
+    custom: Mapping[str, str | float],
 ) -> str:
     """Return a specification of hinges, position servos and simple geoms as MJCF.
 
@@ -54,7 +54,7 @@ def mjcf_text(
         spec: the specification.
         name: name of the model.
         keyframes: `qpos` and `ctrl` of each keyframe, by its name.
-        custom: texts in `<custom>`, by name.
+        custom: texts and numbers in `<custom>`, by name.
     """
     return document(_Writer(spec, name).root(keyframes, custom))
 
@@ -67,16 +67,19 @@ class _Writer:
     def root(
         self,
         keyframes: Mapping[str, tuple[FloatArray, FloatArray]],
-        custom: Mapping[str, str],
+        custom: Mapping[str, str | float],
     ) -> Element:
         add(self._root, "compiler", {"angle": "radian"})
         # Dense: with sparse matrices MuJoCo 4.0.0 factors large models wrongly.
         option = {"integrator": "implicitfast", "jacobian": "dense"}
         add(self._root, "option", {"timestep": numbers([self._model.opt.timestep]), **option})
         if custom:
-            texts = add(self._root, "custom", {})
-            for text_name, text in custom.items():
-                add(texts, "text", {"name": text_name, "data": text})
+            section = add(self._root, "custom", {})
+            for name, value in custom.items():
+                if isinstance(value, str):
+                    add(section, "text", {"name": name, "data": value})
+                else:
+                    add(section, "numeric", {"name": name, "data": numbers([value])})
         self._add_meshes()
         bodies = [add(self._root, "worldbody", {})]
         self._add_geoms(bodies[0], 0)

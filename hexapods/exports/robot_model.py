@@ -6,10 +6,11 @@ from hexapods.domain.gait import resolve
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray
+from hexapods.exports.exported_settings import exported_settings
 from hexapods.exports.mjcf_text import mjcf_text
+from hexapods.imports.exported_pose import HOME_KEY
+from hexapods.imports.exported_settings import PREFIX
 from hexapods.physics.mjcf import robot_spec
-
-HOME_KEY = "home"
 
 
 def robot_mjcf(robot: Robot) -> str:
@@ -21,7 +22,8 @@ def robot_mjcf(robot: Robot) -> str:
     standing = home_angles_rad(robot)
     height_m = robot.body_height_m + robot.foot_radius_m
     qpos = np.concatenate(([0, 0, height_m, 1, 0, 0, 0], standing))
-    return mjcf_text(robot_spec(robot), robot.name, {HOME_KEY: (qpos, standing)}, {})
+    settings = {f"{PREFIX}{name}": value for name, value in exported_settings(robot).items()}
+    return mjcf_text(robot_spec(robot), robot.name, {HOME_KEY: (qpos, standing)}, settings)
 
 
 def home_angles_rad(robot: Robot) -> FloatArray:

@@ -14,6 +14,7 @@ child `reading` goes through the steps:
   `chain` and `reach`, `heights` how high it could; `joint_kinds` names the joints; `masses` and
   `servos` fill in what is missing; `shapes` finds what touches the ground, from `surfaces`;
   `drawing` what is drawn.
+- `exported_settings` and `exported_pose` read what a file that was exported here says of its robot.
 - `building` makes a `RobotModel` of all, within `link_limits`, `sketch` a picture of the bodies in
   the file, for a person who corrects what was guessed. `choices` are decisions of a person,
   `notes` guesses and repairs, `imported` the result.

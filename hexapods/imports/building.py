@@ -21,11 +21,12 @@ from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
 from hexapods.imports.directions import find_forward, find_gait, numbered
 from hexapods.imports.drawing import find_meshes
+from hexapods.imports.exported_pose import FOREIGN, ExportedPose
 from hexapods.imports.heights import body_height_m
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.joint_kinds import joint_kinds
 from hexapods.imports.link_limits import checked_model
-from hexapods.imports.masses import Mass, find_masses
+from hexapods.imports.masses import Mass, find_masses, mass_of
 from hexapods.imports.notes import Notes, quoted
 from hexapods.imports.posed_robot import PosedRobot, initial_pose, keyframes_of
 from hexapods.imports.reach import can_step
@@ -67,8 +68,21 @@ class FileOrigin:
     file: str | None
 
 
-def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes) -> ImportedRobot:
+def build(
+    compiled: Compiled,
+    origin: FileOrigin,
+    choices: Choices,
+    notes: Notes,
+    exported: ExportedPose = FOREIGN,
+) -> ImportedRobot:
     """Build the robot from a compiled file.
+
+    Args:
+        compiled: the model.
+        origin: where it is from.
+        choices: what a person decided.
+        notes: gets what is guessed and repaired.
+        exported: what a file that was exported here says of its frame and stance.
 
     Raises:
         InvalidInput: if the file is no robot with legs, or a choice is not possible.
@@ -76,12 +90,13 @@ def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes
     apply_choices(compiled.model, choices)
     pose = initial_pose(compiled.model)
     skeleton = find_skeleton(compiled, pose, choices, notes)
-    posed = PosedRobot(compiled, skeleton, pose)
+    posed = PosedRobot(compiled, skeleton, pose, keeps_frame=exported.keeps_frame)
     names = [_names_of(compiled, leg) for leg in posed.legs]
     up = choices.up or "z"
     posed.turn(find_forward(posed.mounts()[:, :2], names, up, choices, notes))
-    posed.order(numbered(_places(posed)))
-    return _Builder(posed, keyframes_of(compiled.model), origin, choices, notes).build()
+    posed.order(range(len(posed.legs)) if exported.keeps_frame else numbered(_places(posed)))
+    keyframes = {**keyframes_of(compiled.model), **exported.keyframes(compiled.model)}
+    return _Builder(posed, keyframes, origin, choices, notes, exported).build()
 
 
 def _names_of(compiled: Compiled, leg: FoundLeg) -> list[str]:
@@ -109,14 +124,16 @@ def _places(posed: PosedRobot) -> FloatArray:
 
 
 class _Builder:
-    def __init__(
+    def __init__(  # noqa: PLR0917 - it only collects what `build` found
         self,
         posed: PosedRobot,
         keyframes: Mapping[str, FloatArray],
         origin: FileOrigin,
         choices: Choices,
         notes: Notes,
+        exported: ExportedPose,
     ) -> None:
+        self._exported = exported
         self._posed, self._origin, self._choices, self._notes = posed, origin, choices, notes
         self._compiled = posed.compiled
         self._keyframes = keyframes
@@ -133,7 +150,14 @@ class _Builder:
         self._tell_of_reach(home, reaches=reaches)
         links: dict[int | None, str] = {None: self._name_of_torso()}
         links |= {joint: self._name_of_link(joint) for joint in self._joints}
-        masses = find_masses(self._posed, links, self._ends(), self._choices, self._notes)
+        masses = find_masses(
+            self._posed,
+            links,
+            self._ends(),
+            self._choices,
+            self._notes,
+            are_whole=self._exported.keeps_frame,
+        )
         mass_kg = ordered_sum(mass.kg for mass in masses.values())
         if not 0.001 <= mass_kg <= 10_000:
             raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
@@ -288,9 +312,10 @@ class _Builder:
         ):
             parent, parent_at = 0, np.zeros(3)
             all_shapes = self._shapes_of(leg, chain, home[number - 1])
+            carrying = leg.joints[-1:] if self._has_foot_link(leg) else ()
             for place, joint in enumerate(leg.joints):
                 at = chain.anchors[place]
-                mass = masses[joint]
+                mass = masses[joint] if joint not in carrying else self._without_foot(leg)
                 link = _link(names[joint], parent, number, mass, at=at, parent_at=parent_at)
                 home_rad = float(home[number - 1][place])
                 turned = self._joint(
@@ -299,10 +324,28 @@ class _Builder:
                 geoms = tuple(shape.as_geom(at) for shape in all_shapes[place])
                 parent, parent_at = len(links), at
                 links.append(_with(link, turned, geoms, meshes.get(joint)))
+            if carrying:
+                mass = mass_of(self._posed, [leg.foot.body])
+                place_of_foot = {"at": chain.foot, "parent_at": parent_at}
+                links.append(_link(quoted(leg.foot.name), parent, number, mass, **place_of_foot))
+                parent, parent_at = len(links) - 1, chain.foot
             feet.append(
                 ModelFoot(parent, _vector(chain.foot - parent_at), float(leg.foot.radius_m))
             )
         return checked_model(links, feet)
+
+    def _has_foot_link(self, leg: FoundLeg) -> bool:
+        """Whether the foot is a link with a mass, as in files that were exported here.
+
+        It stays one, since MuJoCo's contacts depend on the mass of the body that has a foot.
+        """
+        model, body = self._compiled.model, leg.foot.body
+        is_apart = int(model.jnt_bodyid[leg.joints[-1]]) != body and model.body_mass[body] > 0
+        return self._exported.keeps_frame and bool(is_apart)
+
+    def _without_foot(self, leg: FoundLeg) -> Mass:
+        bodies = self._posed.bodies_of(leg.joints[-1])
+        return mass_of(self._posed, [body for body in bodies if body != leg.foot.body])
 
     def _joint(
         self, joint: int, name: str, axis: FloatArray, home_rad: float, servo: FoundServo

@@ -217,6 +217,9 @@ def _mend_inertias(spec: mujoco.MjSpec, notes: Notes) -> None:
             values = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         else:
             values = np.sort(diagonal)
+        if body.mass == 0 and not np.any(values):
+            body.explicitinertial = False  # it says that it has no mass
+            continue
         if body.mass > 0 and values[0] > _EIGENVALUE_RATIO * max(values[-1], 1e-12):
             continue
         if body.mass <= 0:

@@ -1,10 +1,12 @@
 """What was read from a file: a robot, what was guessed and repaired, and how it looks."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import AnyGait
+from hexapods.domain.model_robot import ModelRobot, model_robot
 from hexapods.domain.records import Record
 from hexapods.domain.robot_model import ModelMesh, RobotModel, Vector
 from hexapods.imports.notes import Note
@@ -46,6 +48,8 @@ class ImportedRobot(Record):
         reaches_grid: whether each foot at home reaches the corners of a box around it, which is
             about as large as a foot grid that suits the robot.
         notes: what was guessed and repaired.
+        numbers: values of fields in `ModelRobot.changeable` that the file gives: one that was
+            exported here.
     """
 
     model: RobotModel
@@ -62,6 +66,15 @@ class ImportedRobot(Record):
     body_heights_m: tuple[float, float] | None
     reaches_grid: bool
     notes: tuple[Note, ...]
+    numbers: Mapping[str, float] = field(default_factory=dict)
+
+    def robot(self, name: str) -> ModelRobot:
+        """Return the robot under a name.
+
+        Raises:
+            InvalidInput: if a number is out of range.
+        """
+        return model_robot(self.model, name, **self.numbers)
 
     @property
     def guesses(self) -> tuple[str, ...]:

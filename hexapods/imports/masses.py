@@ -47,6 +47,8 @@ def find_masses(
     ends: Mapping[int | None, FloatArray],
     choices: Choices,
     notes: Notes,
+    *,
+    are_whole: bool = False,
 ) -> dict[int | None, Mass]:
     """Return the mass of each link.
 
@@ -56,14 +58,15 @@ def find_masses(
         ends: two points of each link, (2, 3), between which one without shapes lies.
         choices: what a person decided.
         notes: gets the guesses.
+        are_whole: whether each mass in the file is that of its link, however small.
 
     Raises:
         InvalidInput: if no link has a mass or a shape.
     """
-    masses = {joint: _together(posed, posed.bodies_of(joint)) for joint in links}
+    masses = {joint: mass_of(posed, posed.bodies_of(joint)) for joint in links}
     # A body with two joints is two links, the first of which has nothing.
     between = {joint for joint in links if joint is not None and not posed.bodies_of(joint)}
-    weighed = [joint for joint in links if joint not in between]
+    weighed = [] if are_whole else [joint for joint in links if joint not in between]
     by_shapes = {
         joint: _of_shapes(posed, posed.geoms_of(posed.bodies_of(joint)))
         for joint in weighed
@@ -150,7 +153,8 @@ def _tell(without: Sequence[str], placeholders: Sequence[str], notes: Notes) -> 
         )
 
 
-def _together(posed: PosedRobot, bodies: Sequence[int]) -> Mass:
+def mass_of(posed: PosedRobot, bodies: Sequence[int]) -> Mass:
+    """Return the mass of some bodies together, as the file gives it."""
     masses = posed.compiled.model.body_mass
     body_masses = [
         Mass(float(masses[body]), posed.center_of_mass(body), posed.inertia(body))

@@ -85,6 +85,12 @@ class Notes:
         """Add a note about a repair."""
         self._add(Note("repair", topic, text, tuple(parts), offer))
 
+    def copy(self) -> "Notes":
+        """Return a collection that begins with the same notes."""
+        notes = Notes()
+        notes._notes = self._notes.copy()
+        return notes
+
     def collected(self) -> tuple[Note, ...]:
         """Return the notes in the order in which they were made."""
         return tuple(self._notes)

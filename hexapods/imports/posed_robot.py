@@ -29,7 +29,22 @@ class PosedRobot:
         turn_deg: direction of forward, anticlockwise from x of the file.
     """
 
-    def __init__(self, compiled: Compiled, skeleton: Skeleton, pose: FloatArray) -> None:
+    def __init__(
+        self,
+        compiled: Compiled,
+        skeleton: Skeleton,
+        pose: FloatArray,
+        *,
+        keeps_frame: bool = False,
+    ) -> None:
+        """Pose a robot.
+
+        Args:
+            compiled: the model.
+            skeleton: torso and legs.
+            pose: `qpos`; its angles of legs are not used.
+            keeps_frame: whether the torso's frame is the body frame.
+        """
         self.compiled, self.skeleton = compiled, skeleton
         self.legs: Sequence[FoundLeg] = skeleton.legs
         self._data = mujoco.MjData(compiled.model)
@@ -40,6 +55,8 @@ class PosedRobot:
         mujoco.mj_kinematics(compiled.model, self._data)
         mounts = self._data.xanchor[[leg.joints[0] for leg in skeleton.legs]]
         self._origin: FloatArray = (mounts.min(axis=0) + mounts.max(axis=0)) / 2
+        if keeps_frame:
+            self._origin = np.array(self._data.xpos[skeleton.root])
         self._turn: FloatArray = np.eye(3)
         self.turn_deg = 0.0
         self._joint_of_body = self._joints_that_move()

@@ -3,13 +3,15 @@
 import posixpath
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.text import MAX_NAME, visible
 from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled, compile_document
-from hexapods.imports.imported import RobotReading
+from hexapods.imports.exported_settings import ExportedSettings, read_exported_settings
+from hexapods.imports.imported import ImportedRobot, RobotReading
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import clean_mjcf
 from hexapods.imports.notes import Notes, listed, quoted
@@ -40,6 +42,7 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
         )
     path, root = _document(upload, choices, notes)
     meshes = MeshFiles(upload, path, notes)
+    settings = read_exported_settings(root)
     if root.tag == "mujoco":
         clean_mjcf(root, meshes, notes)
     else:
@@ -49,11 +52,34 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
     origin = FileOrigin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
+    robot, problem = None, None
+    if settings is not None and choices.scale is None and choices.up is None:
+        # They may not fit a file that was changed since.
+        with suppress(InvalidInput):
+            robot = _exported(compiled, origin, choices, notes.copy(), settings)
     try:
-        robot, problem = build(compiled, origin, choices, notes), None
+        robot = robot or build(compiled, origin, choices, notes)
     except InvalidInput as error:
-        robot, problem = None, meshes.with_missing(str(error))
-    return RobotReading(robot, problem, notes.collected(), sketch_robot(compiled, robot))
+        problem = meshes.with_missing(str(error))
+    notes_of_robot = notes.collected() if robot is None else robot.notes
+    return RobotReading(robot, problem, notes_of_robot, sketch_robot(compiled, robot))
+
+
+def _exported(
+    compiled: Compiled,
+    origin: FileOrigin,
+    choices: Choices,
+    notes: Notes,
+    settings: ExportedSettings,
+) -> ImportedRobot:
+    """Return the robot of a file that was exported here.
+
+    Raises:
+        InvalidInput: if its settings, or the choices of a person, do not fit it.
+    """
+    notes.guess("file", "it was exported here: its gait, stance, servos and times are in the file")
+    robot = build(compiled, origin, settings.fill(choices), notes, settings.pose(choices))
+    return settings.apply(robot, choices)
 
 
 def _compiled(root: Element, meshes: MeshFiles, notes: Notes, scale: float | None) -> Compiled:

@@ -1,7 +1,7 @@
 """Parts of a robot that touch the ground beside its feet: simple shapes in place of meshes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -13,6 +13,8 @@ from hexapods.imports.posed_robot import PosedRobot
 
 _MOST_OF_TORSO, _MOST_OF_LINK = 8, 6
 _LEAST_M = 0.001
+_SAME_END = 1e-4
+"""Largest difference between the end of a cylinder and a sphere there, as a share of its radius."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +76,9 @@ def torso_shapes(posed: PosedRobot, span_m: FloatArray) -> list[GroundShape]:
     geoms = _touching(posed, posed.geoms_of(_of_torso(posed)))
     shapes = [_simple_shape(posed, geom) for geom in geoms if posed.compiled.collides[geom]]
     simple = [shape for shape in shapes if shape is not None]
-    if simple and len(simple) == len(geoms) <= _MOST_OF_TORSO:
-        return simple
+    merged = _with_capsules(simple)
+    if simple and len(simple) == len(geoms) and len(merged) <= _MOST_OF_TORSO:
+        return merged
     points = [posed.surface(geom)[0] for geom in geoms]
     together = np.concatenate([*points, np.empty((0, 3))])
     if len(together) == 0:
@@ -100,8 +103,11 @@ def link_shapes(
         if not posed.compiled.collides[geom]:
             continue
         shape = _simple_shape(posed, geom) or _around(posed, geom)
-        if shape is not None and not (foot is not None and _is_foot(shape, *foot)):
+        if shape is not None:
             shapes.append(shape)
+    shapes = [
+        shape for shape in _with_capsules(shapes) if foot is None or not _is_foot(shape, *foot)
+    ]
     shapes.sort(key=lambda shape: -float(shape.size_m.max()))
     return shapes[:_MOST_OF_LINK]
 
@@ -159,6 +165,34 @@ def _around(posed: PosedRobot, geom: int) -> GroundShape | None:
     turned = rotation[:, [(long + 1) % 3, (long + 2) % 3, long]]
     size = np.array([radius, max(float(half[long]) - radius, _LEAST_M), 0])
     return GroundShape("capsule", size, posed.geom_center(geom) + rotation @ center, turned)
+
+
+def _with_capsules(shapes: Sequence[GroundShape]) -> list[GroundShape]:
+    """Return shapes with a capsule in place of each cylinder that has a sphere at both ends.
+
+    URDF has no capsules, so files have these instead.
+    """
+    kept = list(shapes)
+    for cylinder in [shape for shape in shapes if shape.kind == "cylinder"]:
+        along = cylinder.rotation[:, 2] * cylinder.size_m[1]
+        ends = [_sphere_at(kept, cylinder, cylinder.at_m + sign * along) for sign in (1, -1)]
+        if None not in ends:
+            place = kept.index(cylinder)
+            kept[place] = replace(cylinder, kind="capsule")
+            kept = [shape for shape in kept if shape not in ends]
+    return kept
+
+
+def _sphere_at(
+    shapes: Sequence[GroundShape], cylinder: GroundShape, end_m: FloatArray
+) -> GroundShape | None:
+    """Return a sphere as wide as a cylinder at its end; None if there is none."""
+    radius_m = float(cylinder.size_m[0])
+    for shape in shapes:
+        off_m = max(abs(float(shape.size_m[0]) - radius_m), float(np.abs(shape.at_m - end_m).max()))
+        if shape.kind == "sphere" and off_m <= _SAME_END * radius_m:
+            return shape
+    return None
 
 
 def _is_foot(shape: GroundShape, center: FloatArray, radius_m: float) -> bool:

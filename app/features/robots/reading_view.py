@@ -6,7 +6,6 @@ from typing import Any
 from app.answer import Answer
 from hexapods.domain.gait import AnyGait, resolve
 from hexapods.domain.kinematics import legs_of
-from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot import Robot
 from hexapods.domain.robot_model import Vector
 from hexapods.domain.sums import ordered_sum
@@ -158,7 +157,7 @@ def body_view(body: Robot, spec: AnyGait) -> RobotReadingView:
 
 
 def _read_robot(imported: ImportedRobot) -> ReadRobot:
-    robot = model_robot(imported.model, imported.name)
+    robot = imported.robot(imported.name)
     gait = resolve(imported.gait, robot.azimuths_deg)
     return ReadRobot(
         name=imported.name,

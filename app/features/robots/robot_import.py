@@ -17,7 +17,7 @@ from hexapods.domain.creatures import own_gait
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.gait import GaitSpec, gait_spec, read_gait, resolve
 from hexapods.domain.json_lists import check_lists
-from hexapods.domain.model_robot import ModelRobot, model_robot
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import from_json, to_json, to_json_bytes
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
 from hexapods.domain.support import STANDS_M, Support
@@ -199,7 +199,7 @@ def _of_file(
     imported: ImportedRobot, choices: Choices, file: str | None
 ) -> tuple[StoredRobot, bytes]:
     """Return a robot from a file, under a name that is to be replaced, with its document."""
-    document = document_of(model_robot(imported.model, _UNNAMED))
+    document = document_of(imported.robot(_UNNAMED))
     about = StoredRobot(
         id=robot_documents.id_of(document),
         name=_UNNAMED,

@@ -20,7 +20,7 @@ from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json
 from hexapods.domain.gait import read_gait as read_gait_of
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import PRESETS, Robot, as_mapping, document_of
+from hexapods.domain.robot import PRESETS, Robot, as_mapping
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
@@ -169,29 +169,29 @@ def export_robot(
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
-    """Write a robot as a model that MuJoCo opens without other files, or as a document.
+    """Write a robot as MJCF, as URDF, or as a document.
 
-    `hexapods robots import` stores the document elsewhere.
+    `hexapods robots import` reads all of them as the same robot again.
 
     Args:
-        out: file to write: .xml for MJCF, or .json
+        out: file to write: .xml for MJCF, .urdf, .zip for URDF with meshes, or .json
 
     Raises:
         HexapodError: if the robot is not valid, or the file cannot be written.
     """
     del data  # by it the program has found the folder of stored robots
-    # MuJoCo chooses how it reads a file by its ending.
-    ending = Path(out).suffix
-    if ending not in (".xml", ".json"):
-        raise InvalidInput(f"the name of the file must end with .xml or .json: {out}")
+    from hexapods.exports.robot_files import ROBOT_FILES  # noqa: PLC0415 - slows other commands
+
+    # Other programs choose how they read a file by its ending.
+    ending = Path(out).suffix.removeprefix(".")
+    if ending not in ROBOT_FILES:
+        *endings, last = (f".{name}" for name in ROBOT_FILES)
+        valid = f"{', '.join(endings)} or {last}"
+        raise InvalidInput(f"the name of the file must end with {valid}: {out}")
     robot = read_robot(name)
     check_writable(out)
-    if ending == ".json":
-        content, use = document_of(robot), "`hexapods robots import` stores it elsewhere"
-    else:
-        from hexapods.exports.robot_model import robot_mjcf  # noqa: PLC0415 - loads MuJoCo
-
-        content, use = robot_mjcf(robot).encode(), "its keyframe `home` has it standing"
+    _, write, use = ROBOT_FILES[ending]
+    content = write(robot)
     write_whole(out, content)
     if as_json:
         print(json.dumps({"robot": robot.name, "file": out, "bytes": len(content)}))

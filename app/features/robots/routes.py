@@ -1,8 +1,8 @@
 """Routes of stored robots."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from fastapi import Path, Query
+from fastapi import Path, Query, Request
 from pydantic import ConfigDict, Field
 from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import Response
@@ -10,7 +10,7 @@ from starlette.responses import Response
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
 from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.fields import Body, Name
-from app.api.formats import attachment
+from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH, api_router, policy
 from app.api.record_response import RecordResponse
 from app.api.schemas import PatchBody, one_given
@@ -36,6 +36,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.records import from_json
 from hexapods.domain.robot import AnyRobot
+from hexapods.exports.robot_files import ROBOT_FILES
 from hexapods.imports.choices import AS_FOUND, Choices
 
 FILE_TYPES = ("application/xml", "application/zip", "application/octet-stream")
@@ -262,10 +263,35 @@ def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
     "/{robot_id:robot}/file",
     summary="Download a stored robot",
     response_class=Response,
-    responses=answers(200, {"application/json": {"type": "object"}}, headers=ATTACHMENT),
+    responses=answers(
+        200,
+        {
+            kind.file.media_type: {"type": "object"} if kind.file.ending == "json" else BINARY
+            for kind in ROBOT_FILES.values()
+        },
+        headers=ATTACHMENT,
+    ),
 )
 @policy(access=WATCH, work=ANALYSIS)
-def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
-    """Return a robot's document, which `POST /robots` or `hexapods robots import` can store."""
-    data = services.store.robots.document(robot_id)
-    return attachment(data, "application/json", f"robot-{robot_id}.json")
+def get_robot_file(
+    services: ServicesDep,
+    request: Request,
+    robot_id: RobotPath,
+    file_format: Annotated[
+        Literal["json", "xml", "urdf", "zip"] | None,
+        Query(alias="format", description="json: its document; xml: MJCF; zip: URDF with meshes"),
+    ] = None,
+) -> Response:
+    """Return a robot's document, or the robot as MJCF or URDF.
+
+    `POST /robots` or `hexapods robots import` can store each of them: as the same robot.
+    """
+    types = {kind.file.media_type: ending for ending, kind in ROBOT_FILES.items()}
+    ending = negotiated(request, file_format, [*ROBOT_FILES], types)
+    kind = ROBOT_FILES[ending]
+    robots = services.store.robots
+    if ending == "json":
+        content = robots.document(robot_id)
+    else:
+        content = kind.write(robots.get(robot_id).robot)
+    return attachment(content, kind.file.media_type, f"robot-{robot_id}.{ending}")

@@ -20,7 +20,6 @@ from app.features.robots.readings import KeptFile, is_model_file
 from app.settings import Settings, read_settings
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.gait import resolve
-from hexapods.domain.model_robot import model_robot
 from hexapods.domain.records import from_json, to_json
 from hexapods.extras import needs
 from hexapods.imports.child import inspect_robot_file
@@ -145,7 +144,7 @@ def _draw(reading: RobotReading, file: str) -> None:
         from hexapods.exports.sketch_picture import sketch_png  # noqa: PLC0415 - loads OpenGL
     groups: Sequence[Sequence[int]] = ()
     if (imported := reading.robot) is not None:
-        azimuths_deg = model_robot(imported.model, imported.name).azimuths_deg
+        azimuths_deg = imported.robot(imported.name).azimuths_deg
         groups = resolve(imported.gait, azimuths_deg).groups
     write_whole(file, sketch_png(reading.sketch, groups))
 

@@ -22,8 +22,12 @@ export const refusals = signal({});
 export const storedRobots = computed(() => (options.value?.robots ?? []).filter(({ id }) => id !== null));
 
 const pathOf = (/** @type {string} */ id) => `robots/${encodeURIComponent(id)}`;
-/** Where a robot's document is downloaded. @param {string} id */
-export const fileOf = (id) => `api/v1/${pathOf(id)}/file`;
+/**
+ * Where a robot is downloaded: its document, or in a format of other programs.
+ * @param {string} id
+ * @param {string} [format]
+ */
+export const fileOf = (id, format) => `api/v1/${pathOf(id)}/file${format ? `?format=${format}` : ""}`;
 
 /** The options are asked for again, so that the form knows the robot. */
 export async function refresh() {

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import mujoco
+import pytest
 
 from hexapods.domain.creatures import CREATURES
 from tests.cli.running import in_process, output, refusal
@@ -58,11 +59,25 @@ def test_a_robot_is_exported_as_a_model_for_mujoco(tmp_path: Path) -> None:
     assert said.stdout.startswith("stiff (modified) is in own.xml (")
 
 
+@pytest.mark.parametrize("file", ["dog.urdf", "dog.zip", "dog.xml"])
+def test_an_exported_robot_is_imported_as_the_same(file: str, tmp_path: Path) -> None:
+    output("robots", "export", "dog", "--out", file, folder=tmp_path, run=in_process)
+    stored = output("robots", "import", file, "--name", "Rex", folder=tmp_path, run=in_process)
+    assert stored["gait"] == "trot"
+    grid = ("--grid-side-m", "0.04")
+    shown = output("robots", "show", "Rex", *grid, folder=tmp_path, run=in_process)
+    original = output("robots", "show", "dog", *grid, folder=tmp_path, run=in_process)
+    assert shown["gait"] == original["gait"]
+    assert shown["mass_kg"] == pytest.approx(original["mass_kg"])
+    assert shown["law_m"] == pytest.approx(original["law_m"])
+
+
 def test_a_robot_that_cannot_be_exported_is_refused(tmp_path: Path) -> None:
     def refused(*arguments: str) -> str:
         return refusal("robots", "export", *arguments, folder=tmp_path, run=in_process)
 
     assert "unknown robot 'cat'; choose one of: stiff" in refused("cat", "--out", "cat.xml")
-    assert "must end with .xml or .json: dog.urdf" in refused("dog", "--out", "dog.urdf")
+    endings = "must end with .json, .xml, .urdf or .zip"
+    assert f"{endings}: dog.sdf" in refused("dog", "--out", "dog.sdf")
     assert "cannot write no/dog.xml" in refused("dog", "--out", "no/dog.xml")
     assert not [*tmp_path.iterdir()]

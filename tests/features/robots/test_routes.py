@@ -69,6 +69,19 @@ def test_the_same_content_is_stored_once(api: Api, rex: dict[str, Any]) -> None:
     assert (again.status_code, again.json()["id"]) == (200, rex["id"])
 
 
+@pytest.mark.parametrize("file_format", ["xml", "urdf", "zip"])
+def test_a_robot_is_downloaded_for_other_programs_and_taken_in_again(
+    api: Api, rex: dict[str, Any], file_format: str, serve: Callable[..., Api]
+) -> None:
+    file = api.call("GET", f"/robots/{rex['id']}/file?format={file_format}")
+    assert file.status_code == 200
+    assert f"robot-{rex['id']}.{file_format}" in file.headers["content-disposition"]
+    query = f"name=Again&file=rex.{file_format}"
+    again = serve().call("POST", f"/robots?{query}", content=file.content)
+    assert (again.status_code, again.json()["gait"]) == (201, rex["gait"])
+    refused(api.call("GET", f"/robots/{rex['id']}/file?format=sdf"), 422, "urdf")
+
+
 def test_a_document_is_stored_elsewhere_with_the_same_id(
     api: Api, rex: dict[str, Any], serve: Callable[..., Api]
 ) -> None:

@@ -106,6 +106,8 @@ function Stored({ robot }) {
         <span class="dim">${hidden ? "Hidden; " : ""}${description}</span>
         <span class="space"></span>
         <a class="link" href=${fileOf(id)} download="" aria-label=${`Download ${title}`}>Download</a>
+        <a class="link" href=${fileOf(id, "xml")} download="" aria-label=${`MJCF of ${title}`}>MJCF</a>
+        <a class="link" href=${fileOf(id, "zip")} download="" aria-label=${`URDF of ${title}`}>URDF</a>
         ${isOperator.value && !body && html`
           <button class="link" aria-label=${`Correct ${title}`} aria-expanded=${isCorrected}
             onClick=${() => correct(isCorrected ? null : id)}>Correct…</button>
