@@ -6,7 +6,7 @@ child `reading` goes through the steps:
 
 - `upload` unpacks; `xml` reads the document within bounds; `mjcf` and `urdf` keep of it what
   describes a body; `mesh_files` and `decimation` read and simplify meshes (`stl`, `obj`,
-  `collada`).
+  `collada`, `gltf`).
 - `compiling` has MuJoCo turn it into numbers, in the `units` of the file and without
   `incomplete_shapes`; `posed_robot` is the robot with all joints at 0.
 - `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward, by

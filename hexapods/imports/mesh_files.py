@@ -1,7 +1,7 @@
 """Mesh files as MuJoCo reads them: binary STL and OBJ, together not too many triangles.
 
-Text STL and COLLADA become binary STL. A mesh that cannot be read is left out. MuJoCo takes more
-than a kilobyte for each triangle, so that many meshes are simplified as they are read.
+Text STL, COLLADA and glTF become binary STL. A mesh that cannot be read is left out. MuJoCo takes
+more than a kilobyte for each triangle, so that many meshes are simplified as they are read.
 """
 
 import posixpath
@@ -14,6 +14,7 @@ from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray, IntArray
 from hexapods.imports.collada import read_collada
 from hexapods.imports.decimation import cluster
+from hexapods.imports.gltf import read_gltf
 from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.obj import read_obj, write_obj
 from hexapods.imports.stl import TRIANGLE_BYTES, read_stl, write_stl
@@ -22,8 +23,8 @@ from hexapods.imports.upload import MAX_MESH_BYTES, Upload, last_part
 MAX_MESHES = 300
 MAX_ALL_BYTES = 96 << 20
 """Size of all meshes that a robot uses, together."""
-FORMATS = (".stl", ".obj", ".dae")
-_MOST_BYTES = {".dae": 16 << 20}
+FORMATS = (".stl", ".obj", ".dae", ".gltf", ".glb")
+_MOST_BYTES = {".dae": 16 << 20, ".gltf": 16 << 20}
 """Numbers as text take several times as much memory."""
 _SIMPLIFIED_ABOVE = 50_000
 """Triangles of one mesh, unless it is OBJ."""
@@ -182,25 +183,38 @@ class MeshFiles:
             return None
         if len(self.assets) >= MAX_MESHES:
             raise DamagedFile(f"it has more than {MAX_MESHES} meshes")
-        content = self._upload.read(path, _MOST_BYTES.get(ending, MAX_MESH_BYTES))
-        self._bytes += len(content)
-        if self._bytes > MAX_ALL_BYTES:
-            raise DamagedFile(f"its meshes have more than {MAX_ALL_BYTES:,} bytes together")
         name = f"mesh{len(self.assets)}{'.obj' if ending == '.obj' else '.stl'}"
         try:
-            self._read(name, path, content, ending)
+            self._read(name, path, ending)
         except DamagedFile as error:
+            if self._bytes > MAX_ALL_BYTES:
+                raise
             self._damaged.append(f"{quoted(posixpath.basename(path))} ({error})")
             return None
         self._fit()
         return name
 
-    def _read(self, name: str, path: str, content: bytes, ending: str) -> None:
+    def _content(self, path: str, most_bytes: int) -> bytes:
+        content = self._upload.read(path, most_bytes)
+        self._bytes += len(content)
+        if self._bytes > MAX_ALL_BYTES:
+            raise DamagedFile(f"its meshes have more than {MAX_ALL_BYTES:,} bytes together")
+        return content
+
+    def _buffer(self, uri: str, path: str) -> bytes:
+        """Return a file that a mesh names, from the zip."""
+        buffer = self._upload.find(uri, path)
+        if buffer is None:
+            raise DamagedFile(f"its buffer {quoted(last_part(uri))} is missing from the upload")
+        return self._content(buffer, MAX_MESH_BYTES)
+
+    def _read(self, name: str, path: str, ending: str) -> None:
         """Read a mesh, and keep it in a form that MuJoCo reads.
 
         Raises:
             DamagedFile: if it cannot be read, or has no surface.
         """
+        content = self._content(path, _MOST_BYTES.get(ending, MAX_MESH_BYTES))
         _check_content(content)
         is_plain = True
         if ending == ".obj":
@@ -210,8 +224,11 @@ class MeshFiles:
             surface = _separate(corners)
             if not is_plain and corners.base is not None and corners.dtype == np.float32:
                 self._cut.append(posixpath.basename(path))
-        else:
+        elif ending == ".dae":
             surface, is_plain = _separate(read_collada(content, "it")), False
+        else:
+            corners = read_gltf(content, lambda uri: self._buffer(uri, path))
+            surface, is_plain = _separate(corners), False
         self.sides[name] = _checked_side(surface)
         self._paths[name] = path
         self._triangles[name] = self._before[name] = len(surface[1])

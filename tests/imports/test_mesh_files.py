@@ -9,6 +9,7 @@ from hexapods.domain.errors import DamagedFile
 from hexapods.imports.child import read_robot_file
 from hexapods.imports.imported import ImportedRobot
 from hexapods.imports.obj import read_obj, write_obj
+from tests.imports.gltf_files import document, glb
 from tests.imports.robots import INERTIAL, box_triangles, bug, dog, read, stl, text_stl, zipped
 from tests.imports.test_mjcf import mentions
 from tests.imports.test_urdf import MESH, decoded
@@ -29,6 +30,10 @@ def drawn_as(file: str, content: bytes) -> ImportedRobot:
     ("file", "content", "why"),
     [
         ("hull.stl", b"", "it is empty"),
+        ("hull.glb", b"", "it is empty"),
+        ("hull.gltf", b"{}", "it is no glTF of version 2"),
+        ("hull.glb", glb(document(BOX))[:500], "it is no whole GLB of version 2"),
+        ("hull.stl", bytes((32 << 20) + 1), "has 33,554,433 bytes; at most"),
         ("hull.STL", WEB_PAGE, "it is a web page, not the mesh"),
         ("hull.stl", b"version https://git-lfs.github.com/spec/v1\n", "a pointer of Git LFS"),
         ("hull.stl", bytes(84), "it has no triangles"),

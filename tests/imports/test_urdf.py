@@ -161,7 +161,7 @@ def test_missing_and_unreadable_meshes_are_noted() -> None:
     robot = read(zipped({"bug.urdf": bug(torso=torso), "b.3ds": "MM"}))
 
     assert mentions(robot.repairs, "1 mesh is missing from the upload")
-    assert mentions(robot.repairs, "1 mesh is left out, since only .stl, .obj, .dae are read")
+    assert mentions(robot.repairs, "1 mesh is left out, since only .stl, .obj, .dae, .gltf,")
 
 
 def test_a_link_of_which_a_mesh_is_missing_is_drawn_by_its_simple_shapes_too() -> None:
