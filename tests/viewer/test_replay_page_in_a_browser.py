@@ -1,9 +1,11 @@
 """The page that replays a run without a server, in a browser without a network."""
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, expect
 
@@ -137,3 +139,91 @@ def test_a_race_plays_from_its_file_and_in_a_foreign_page(offline: Page, race_fi
         "hexapods:ready",
         "hexapods:timeupdate",
     }
+
+
+def test_a_script_of_a_foreign_page_sets_camera_and_moment(offline: Page, race_file: Path) -> None:
+    host = race_file.with_name("host.html")
+    host.write_text(HOST)
+    offline.goto(host.as_uri())
+    frame = offline.frame_locator("iframe")
+    expect(frame.locator(".labels > div", has_text="Greedy")).to_be_visible(timeout=60_000)
+    inside = offline.frames[1]
+
+    def camera() -> list[list[float]]:
+        """Return the camera's place and what it looks at, x right, y along the track, z up."""
+        # The client's y is up, and its x is against the track.
+        place: list[list[float]] = inside.evaluate(
+            """() => {
+              const { camera, cameraControl } = window.__viserMutable;
+              const target = camera.position.clone();
+              cameraControl.getTarget(target);
+              return [camera.position, target].map(({ x, y, z }) => [-z, -x, y]);
+            }"""
+        )
+        return place
+
+    def centre() -> list[float]:
+        """Return where the world is moved, so that what the camera follows is in the middle."""
+        place: list[float] = inside.evaluate(
+            "() => [...window.__viserMutable.nodePoseData['/world'].position].slice(0, 2)"
+        )
+        return place
+
+    def say(**message: Any) -> None:
+        offline.evaluate("message => say(message)", {"type": "hexapods:camera", **message})
+
+    def near(first: list[float], second: list[float]) -> bool:
+        return bool(np.abs(np.subtract(first, second)).max() < 1e-4)
+
+    place, target = [0.6, -0.4, 0.3], [0.0, 0.1, 0.05]
+    say(position=place, look_at=target)
+    wait_until(lambda: near(camera()[0], place) and near(camera()[1], target))
+    for message in (
+        {"position": [0, 0]},
+        {"position": [0, 0, "1"]},
+        {"position": [0, 0, 1e9]},
+        {"position": [1, 1, 1], "look_at": [1, 1, 1]},
+        {"position": [0, 0, 2], "follow": "nobody"},
+        {"look_at": None},
+        {"follow": 99},
+    ):
+        say(**message)
+    say(position=[0.5, -0.4, 0.3])
+    wait_until(lambda: near(camera()[0], [0.5, -0.4, 0.3]))
+    assert near(camera()[1], target), "none of the messages that are not valid had an effect"
+
+    offline.evaluate("say({ type: 'hexapods:seek', time_s: 3 })")
+    expect(frame.locator(".clock")).to_contain_text("3.0 of")
+    say(follow=1)
+    first = settled(centre)
+    say(follow=2)
+    wait_until(lambda: abs(centre()[0] - first[0]) > 0.3)
+    assert near(camera()[1], target), "it looks at the same place beside what it follows"
+    second = centre()
+    say(follow="free")
+    offline.evaluate("say({ type: 'hexapods:seek', time_s: 1 })")
+    expect(frame.locator(".clock")).to_contain_text("1.0 of")
+    assert near(centre(), second)
+
+
+def settled(measure: Callable[[], list[float]]) -> list[float]:
+    """Return a measure once it stays the same for some pictures."""
+    before = measure()
+    while True:
+        time.sleep(0.3)
+        now = measure()
+        if now == before:
+            return now
+        before = now
+
+
+def wait_until(is_so: Callable[[], bool]) -> None:
+    """Wait until something is so.
+
+    Raises:
+        AssertionError: after 20 s.
+    """
+    deadline = time.monotonic() + 20
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.1)

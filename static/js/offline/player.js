@@ -16,7 +16,10 @@ const LONGEST_TICK_S = 0.25;
 const KEPT_SEGMENTS = 8;
 const UPDATE_MS = 250;
 const SAME_S = 1e-6;
-const VIEW = "leader";
+/** The camera's coordinates may be as far from what it follows, and its place from what it looks at as near [m]. */
+const [FARTHEST_M, NEAREST_M] = [100, 0.01];
+/** What the camera may follow, but lanes, which are numbered from 1. */
+const [LEADER, FREE] = ["leader", "free"];
 
 /** @param {string} id */
 const textOf = (id) => document.getElementById(id)?.textContent ?? null;
@@ -33,6 +36,10 @@ async function read(id) {
   return text === null ? null : await unpack(text);
 }
 
+/** @param {unknown} value */
+const isPlace = (value) => Array.isArray(value) && value.length === 3
+  && value.every((number) => typeof number === "number" && Math.abs(number) <= FARTHEST_M);
+
 /** @param {string} name @param {object} detail */
 const emit = (name, detail) => dispatchEvent(new CustomEvent(name, { detail }));
 
@@ -47,6 +54,7 @@ class Player extends EventTarget {
   #segments = new Map();
   #shown = { number: -1, index: -1 };
   #follower = new Follower();
+  #followed = LEADER;
   #lastTick = 0;
   #toldAt = -Infinity;
 
@@ -91,6 +99,28 @@ class Player extends EventTarget {
     this.#tell();
   }
 
+  /**
+   * Move the camera; what is not given stays. Nothing happens if a value is not valid.
+   * @param {{ position?: number[], look_at?: number[], follow?: string | number }} camera
+   *   Its place and what it looks at, (x, y, z) [m] from what it follows on the ground: x to the right, y along the
+   *   track, z up; and what it follows: "leader", "free" or the number of a lane, from 1.
+   */
+  setCamera({ position, look_at, follow }) {
+    const places = [position, look_at].filter((place) => place !== undefined);
+    const target = follow === undefined ? this.#followed : String(follow);
+    const isThere = [LEADER, FREE, ...replay.step_ends_s.map((_, lane) => String(lane + 1))].includes(target);
+    if (!isThere || !places.every(isPlace)) return;
+    if (position && look_at && Math.hypot(...position.map((x, axis) => x - look_at[axis])) < NEAREST_M) return;
+    if (target !== this.#followed) {
+      this.#followed = target;
+      this.#shown = { number: -1, index: -1 }; // the frame is drawn again, around something else
+    }
+    const messages = [];
+    if (position) messages.push({ type: "SetCameraPositionMessage", position, initial: false });
+    if (look_at) messages.push({ type: "SetCameraLookAtMessage", look_at, initial: false });
+    if (messages.length) emit("hexapods:draw", { messages });
+  }
+
   /** Draw in viser's client, which has an empty scene. */
   async open() {
     const start = /** @type {Frames} */ (await read("scene"));
@@ -128,7 +158,7 @@ class Player extends EventTarget {
     if (before === number && shown === index) return true;
     const messages = this.#scene.showFrame(loaded.frames, index, before === number ? shown : -1);
     const lag_s = before === number || before + 1 === number ? elapsed_s : Infinity;
-    const centring = this.#follower.centring(this.#scene, loaded.frames[index], VIEW, lag_s);
+    const centring = this.#follower.centring(this.#scene, loaded.frames[index], this.#followed, lag_s);
     emit("hexapods:draw", { messages: [...messages, centring] });
     this.#shown = { number, index };
     const scene = /** @type {any} */ (loaded.frames.slice(0, index + 1).findLast((earlier) => earlier.scene)?.scene);
@@ -174,6 +204,7 @@ addEventListener("message", ({ source, data }) => {
   else if (data.type === "hexapods:seek" && typeof data.time_s === "number") player.seek(data.time_s);
   else if (data.type === "hexapods:step" && typeof data.direction === "number") player.step(data.direction);
   else if (data.type === "hexapods:speed" && typeof data.speed === "number") player.setSpeed(data.speed);
+  else if (data.type === "hexapods:camera") player.setCamera(data);
 });
 player.addEventListener("timeupdate", () => tellParent("hexapods:timeupdate"));
 
