@@ -13,7 +13,7 @@ from starlette.routing import Route
 
 from hexapods.drawing.viser_internals.client import content_policy, patched_page
 
-STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "legs.js", "labels.js")
+STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "legs.js", "inspection.js", "labels.js")
 ALLOWED_QUERY = frozenset(
     {
         "theme",

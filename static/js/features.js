@@ -146,6 +146,9 @@ export async function runRow({ feature, dialog, call, run }, subject) {
   run?.();
 }
 
+/** What files are for that are dropped on the page: of the feature that takes any; undefined without one. */
+export const fileTaker = computed(() => features.value.find(({ files }) => files));
+
 /** What a feature tells of runs of a kind; null of trainings and races. */
 /** @type {(run: { kind: string }) => RunKind | null} */
 export const kindOf = ({ kind }) => features.value.find(({ kinds = {} }) => kind in kinds)?.kinds?.[kind] ?? null;

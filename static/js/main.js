@@ -4,6 +4,7 @@ import { render } from "preact";
 import { addressOf, getStage } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
+import { listenForFiles } from "./components/dropping.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
 import { openEvents } from "./events.js";
 import { openForm } from "./form.js";
@@ -69,6 +70,7 @@ announceOutcomes();
 followTitle();
 listenForKeys();
 listenForMenus();
+listenForFiles();
 openEvents(eventNames(), applyEvent, (state) => {
   connection.value = state;
   if (state === "live") isLockedOut.value = false;

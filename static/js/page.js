@@ -130,6 +130,29 @@ export function pickLeg(leg) {
   if (point && lane !== null) picked.value = { ...point, lane, what: "leg" };
 }
 
+// ---- what a feature draws in the 3D view of this page alone, in place of what is played
+
+/** Whether the 3D view has a still scene of a feature, and the player draws nothing. */
+export const isStill = signal(false);
+/**
+ * What the camera goes round, and of which points places are told (viewer/inspection.js): in the frame of the scene's
+ * root `world` [m]. `of` counts the lists of points; `margins_px` stay free
+ * around what is shown.
+ * @typedef {{
+ *   world: string, centre_m: number[], radius_m: number, height_m: number, points: number[][], of: number,
+ *   isTurning: boolean, turned_deg: number, margins_px: { side: number, top: number, bottom: number },
+ * }} Inspection
+ */
+/** @type {Signal<Inspection | null>} */
+export const inspection = signal(null);
+/** Where its points are; null for one that is behind the camera, and whence it is seen. */
+/** @type {Signal<{ of: number, points: (Point | null)[], azimuth_deg: number }>} */
+export const places = signal({ of: 0, points: [], azimuth_deg: 0 });
+/** The node of the still scene that was clicked last. @type {Signal<{ node: string } | null>} */
+export const clickedNode = signal(null);
+/** Counts how often someone has turned the still scene by hand. */
+export const turnedByHand = signal(0);
+
 // ---- texts that are copied
 
 /** The message that is shown for a few seconds. @type {Signal<string | null>} */

@@ -6,6 +6,7 @@ import { getReplay, isLasting } from "./api.js";
 import { SAME_MOMENT_S } from "./format.js";
 import { sceneOf } from "./narrative/moment.js";
 import { change, page } from "./page-state.js";
+import { isStill } from "./page.js";
 import { drawWith, Picture, requestOf } from "./picture.js";
 import {
   approached, endOf, inRecording, momentOf, nextStep, stepsUntil, timeOutOf, unpack,
@@ -79,6 +80,7 @@ const followsStage = signal(false);
 const hasView = signal(false);
 /** What is to be played, as a text: the own replay's run and ghost, or the run on stage; "" for nothing. */
 const source = computed(() => {
+  if (isStill.value) return "";
   if (isOwn.value) return JSON.stringify({ id: page.run.value, ghost: page.ghost.value });
   // The start line has nothing but a picture.
   const isSeen = stage.value !== null && (stage.value.run_id !== null || hasView.value);

@@ -361,6 +361,8 @@ export interface Feature {
   dialogs?: Record<string, LoadedPart>;
   /** By the field of the page's state. */
   panels?: Record<string, PanelPart>;
+  /** What files are for that are dropped on the page, or pasted; an operator's. */
+  files?: { words: string; call: FeatureSource };
   /** By the key; Escape leaves what is on top. */
   keys?: Record<string, FeatureKey>;
   /** By a field of the page's state: what is loaded and called once, when the field is first set. */

@@ -3,8 +3,10 @@
 //
 //   from the parent   {type: "hexapods:show", theme?: "light" | "dark", isProjected?}
 //                     {type: "hexapods:draw", messages: of viser}
+//                     {type: "hexapods:inspect"}, as inspection.js has it
 //   to the parent     {type: "hexapods:status", status: "connected"}
 //                     {type: "hexapods:key", key, code, shiftKey}
+//                     {type: "hexapods:drag"} while files are dragged over the picture
 (() => {
   "use strict";
 
@@ -20,9 +22,9 @@
   };
   addEventListener("message", ({ origin, source, data }) => {
     if (origin !== location.origin || source !== parent) return;
-    if (data?.type !== "hexapods:show" && data?.type !== "hexapods:draw") return;
-    dispatchEvent(new CustomEvent(data.type, { detail: data })); // for labels.js
-    if (data.type === "hexapods:draw") return;
+    if (!["hexapods:show", "hexapods:draw", "hexapods:inspect"].includes(data?.type)) return;
+    dispatchEvent(new CustomEvent(data.type, { detail: data })); // for labels.js and inspection.js
+    if (data.type !== "hexapods:show") return;
     setTheme(data.theme);
     root.toggleAttribute("data-projected", data.isProjected === true);
   });
@@ -49,6 +51,15 @@
   };
   addEventListener("resize", () => setTimeout(fit, 50));
   setInterval(fit, 400);
+
+  // ---- files that are dragged over the picture are dropped on the page, which covers it as soon as it knows
+  for (const type of ["dragenter", "dragover", "drop"]) {
+    addEventListener(type, (event) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      tellParent({ type: "hexapods:drag" });
+    });
+  }
 
   // ---- the dashboard's shortcuts work while the viewer has the focus
   addEventListener("keydown", (event) => {

@@ -65,5 +65,7 @@ Assumed by `client`:
 - clicks_go_through_the_worker: `SetSceneNodeClickBindingsMessage` makes a node clickable, by button
   and modifier; a click without a drag is sent through the worker as a `SceneNodeClickMessage`,
   with the number of the instance of a batched mesh, so that `static/viewer/clicks.js` can keep it.
+- camera_is_controlled: `cameraControl` of `__viserMutable` has the methods of `camera-controls` by
+  which `static/viewer/inspection.js` puts the camera where a scene fills the picture.
 - batched_colors_are_linear: colours of batched meshes are taken as linear, all others as sRGB.
 """

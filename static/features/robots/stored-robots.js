@@ -108,7 +108,7 @@ function send(file) {
 }
 
 /** A name that no robot has: "Rex 2". @param {string} name */
-function distinct(name) {
+export function distinct(name) {
   const [, most] = served().limits.name;
   const short = name.slice(0, (most ?? Infinity) - 4) || "Robot";
   const used = served().robots.flatMap((robot) => [robot.name, robot.title]).map((robot) => robot.toLowerCase());

@@ -7,10 +7,11 @@ import {
 } from "../features.js";
 import { share } from "../actions.js";
 import { page } from "../page-state.js";
-import { clickedCell, helpIsOpen, isPhone, isProjected, nextTheme, theme, toastMessage } from "../page.js";
+import { clickedCell, helpIsOpen, isPhone, isProjected, isStill, nextTheme, theme, toastMessage } from "../page.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
+import { DropTarget } from "./dropping.js";
 import { html, Icon } from "./elements.js";
 import { toggleHelp } from "./keyboard.js";
 import { Panel, replacement, ThumbTabs } from "./panel.js";
@@ -27,6 +28,7 @@ export const App = () => html`
   <${Help} />
   <${Dialogs} />
   <${Toast} />
+  <${DropTarget} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
 
@@ -70,9 +72,9 @@ function Workspace({ isHidden }) {
     if (clickedCell.value && isAtLeast("study")) openTab("table");
   }), []);
   return html`
-    <div class=${`workspace ${isPanelHidden.value ? "alone" : ""}`} hidden=${isHidden}>
+    <div class=${`workspace ${isPanelHidden.value ? "alone" : ""} ${isStill.value ? "still" : ""}`} hidden=${isHidden}>
       <${Stage} />
-      <${TimeBar} />
+      ${!isStill.value && html`<${TimeBar} />`}
       ${isProjected.value && html`<${Slot} name="controls while projected" />`}
       ${!isProjected.value && !replacement.value && html`<${Slot} name="card" />`}
       <${Panel} />

@@ -2,7 +2,7 @@
 import { runPrimaryAction, togglePause } from "../actions.js";
 import { actionOfKey } from "../features.js";
 import { page } from "../page-state.js";
-import { closeLegs, helpIsOpen, legsAreOpen, openLegs, shortcuts } from "../page.js";
+import { closeLegs, helpIsOpen, isStill, legsAreOpen, openLegs, shortcuts } from "../page.js";
 import { isOwn, stepReplay } from "../player.js";
 import { isOperator } from "../selectors.js";
 import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
@@ -40,13 +40,12 @@ function press(pressed) {
   }
   // All but the help act on the race, which a reader of another view does not see.
   if (page.view.value !== "race") return false;
-  if (/^[1-8]$/.test(key)) {
-    page.camera.value = key;
-    return true;
-  }
-  const action = actionOfKey(key) ?? RACE_KEYS[key];
+  const isOfCamera = /^[1-8]$/.test(key) && !isStill.value;
+  if (isOfCamera) page.camera.value = key;
+  // What a feature shows in place of the race has its own keys alone.
+  const action = actionOfKey(key) ?? (isStill.value ? undefined : RACE_KEYS[key]);
   action?.();
-  return action !== undefined;
+  return isOfCamera || action !== undefined;
 }
 
 /** Open the help, or close it. The dialog itself is asked: it tells of its end only later. */

@@ -5,7 +5,8 @@ import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { narrative } from "../headline.js";
 import {
-  clickedCell, closeLegs, drawHere, isProjected, legPoints, legsAreOpen, legsOf, picked, shownTheme,
+  clickedCell, clickedNode, closeLegs, drawHere, inspection, isProjected, isStill, legPoints, legsAreOpen, legsOf,
+  picked, places, shownTheme, turnedByHand,
 } from "../page.js";
 import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, isOwn, plan, playback, replayProblem } from "../player.js";
@@ -15,7 +16,7 @@ import { agentOf } from "../settings.js";
 import { isAway, runs, scene } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon } from "./elements.js";
-import { Loaded } from "../features.js";
+import { Loaded, Slot } from "../features.js";
 import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */
@@ -46,16 +47,18 @@ export function Stage() {
     frame.current?.contentWindow?.postMessage(message, location.origin);
   }, [shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value]);
 
+  useEffect(() => {
+    const message = { type: "hexapods:inspect", inspection: inspection.value };
+    frame.current?.contentWindow?.postMessage(message, location.origin);
+  }, [status, inspection.value]);
+
   const awayWords = awayInWords();
   return html`
     <section class=${`stage ${awayWords && !isReplayed() ? "away" : ""}`} aria-label="Stage" data-status=${status}>
       <div class="picture">
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
         ${status === "loading" && html`<${StagePlaceholder} />`}
-        <${StageLabels} />
-        ${legsAreOpen.value && html`<${Loaded} name="legs" load=${loadLegs} />`}
-        <${StageNotes} />
-        <${ReplayProblem} />
+        ${isStill.value ? html`<${Slot} name="over a still scene" />` : html`<${OverThePlayed} />`}
         ${awayWords && html`
           <p class="away-note" role="status"><span class="spinner" aria-hidden="true"></span>${awayWords}</p>
         `}
@@ -63,6 +66,14 @@ export function Stage() {
     </section>
   `;
 }
+
+/** What lies over the picture of a run. */
+const OverThePlayed = () => html`
+  <${StageLabels} />
+  ${legsAreOpen.value && html`<${Loaded} name="legs" load=${loadLegs} />`}
+  <${StageNotes} />
+  <${ReplayProblem} />
+`;
 
 /** Whether a replay of this page's own is drawn, which goes on without the server as far as it is loaded. */
 const isReplayed = () => isOwn.value && plan.value !== null && !isBuffering.value;
@@ -90,7 +101,8 @@ function useFrame(frame, setStatus) {
     /** @type {Record<string, (data: any) => void>} */
     const takers = {
       "hexapods:click": ({ node, instance }) => {
-        if (isProjected.peek()) return;
+        if (isStill.peek()) clickedNode.value = { node };
+        if (isProjected.peek() || isStill.peek()) return;
         if (isAtLeast("study")) clearTimeout(picking);
         clickedCell.value = { node, instance, run_id: scene.peek()?.run_id ?? null };
       },
@@ -100,6 +112,8 @@ function useFrame(frame, setStatus) {
         picking = setTimeout(() => canPick() && (picked.value = pick), PICK_DELAY_MS);
       },
       "hexapods:legs": ({ legs }) => (legPoints.value = legs),
+      "hexapods:places": ({ places: now }) => (places.value = now),
+      "hexapods:touched": () => (turnedByHand.value += 1),
       "hexapods:status": ({ status }) => {
         setStatus(status);
         if (status !== "connected") return;
@@ -120,7 +134,7 @@ function useFrame(frame, setStatus) {
 }
 
 /** Those who try disturb what they click, but not on a page that is projected. */
-const canPick = () => isAtLeast("try") && !isProjected.peek();
+const canPick = () => isAtLeast("try") && !isProjected.peek() && !isStill.peek();
 
 /** Why the run that a link names cannot be replayed. */
 const ReplayProblem = () => replayProblem.value && html`

@@ -473,6 +473,16 @@ def test_clicks_go_through_the_worker(client: str) -> None:
         assert message_type in script
 
 
+def test_camera_is_controlled(client: str) -> None:
+    script = (assets.static_dir() / "viewer" / "inspection.js").read_text("utf-8")
+    methods = set(re.findall(r"cameraControl\.(\w+)\(", script))
+
+    assert "cameraControl:null" in client
+    assert {"setLookAt", "setFocalOffset", "rotate", "getPosition", "getTarget"} < methods
+    for method in methods:
+        assert re.search(rf"[}};]{method}\([\w,=!]*\)\{{", client), method
+
+
 def test_batched_colors_are_linear(server: RecordedViser, page: Page) -> None:
     from hexapods.drawing.viser_internals.client import batch_colors
     from hexapods.drawing.viser_internals.recorder import recorder

@@ -1,19 +1,20 @@
 // The robots that are stored: renamed, hidden and deleted, and new ones taken in from files.
 import { useState } from "preact/hooks";
-import { correct, corrected } from "../correction.js";
 import { robotsAreOpen } from "../dialogs.js";
 import { isOperator } from "../../../js/selectors.js";
 import {
-  changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken, takeFiles,
+  changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken,
 } from "../stored-robots.js";
-import { CorrectRobot } from "./correct-robot.js";
+import { takeDropped, takeFolder, takeRobotFiles } from "../dropped-files.js";
+import { openStored } from "../reading.js";
+import { contentsOf } from "../../../js/components/dropping.js";
 import { Dialog, html, Icon } from "../../../js/components/elements.js";
 import { Notes } from "./notes.js";
 
 /** @import { Robot } from "../../../js/types.js" */
 /** @import { TakenFile } from "../stored-robots.js" */
 
-const ENDINGS = ".xml,.mjcf,.urdf,.zip,.json";
+const ENDINGS = ".xml,.mjcf,.urdf,.xacro,.zip,.json";
 
 export const StoredRobots = () => html`
   <${Dialog} id="stored-robots" labelledBy="robots-title" isOpen=${robotsAreOpen}>
@@ -45,12 +46,19 @@ function FromFile() {
   const onDrop = (event) => {
     event.preventDefault();
     setOver(false);
-    takeFiles([...event.dataTransfer?.files ?? []]);
+    event.stopPropagation();
+    if (event.dataTransfer) takeDropped(contentsOf(event.dataTransfer));
   };
   /** @param {{ target: HTMLInputElement }} event */
   const onChange = ({ target }) => {
-    takeFiles([...target.files ?? []]);
+    takeRobotFiles([...target.files ?? []]);
     // So that the same file can be chosen again.
+    target.value = "";
+  };
+  /** @param {{ target: HTMLInputElement }} event */
+  const onFolder = ({ target }) => {
+    robotsAreOpen.value = false;
+    takeFolder([...target.files ?? []]);
     target.value = "";
   };
   return html`
@@ -59,7 +67,14 @@ function FromFile() {
         <${Icon} name="import" /><b>Robot from a file…</b>
         <input class="sr-only" type="file" multiple accept=${ENDINGS} onChange=${onChange} />
       </label>
-      <span class="dim">Drop it here: MJCF or URDF, a zip with its meshes, or a robot that was saved elsewhere.</span>
+      <label class="file-button">
+        <${Icon} name="import" /><b>From a folder…</b>
+        <input class="sr-only" type="file" webkitdirectory onChange=${onFolder} />
+      </label>
+      <span class="dim">
+        Or drop it anywhere on the page, or paste it: MJCF, URDF or xacro, a zip, or the folder of its repository. Only
+        its documents and the meshes that they name are sent.
+      </span>
     </div>
   `;
 }
@@ -80,11 +95,16 @@ const Taken = ({ one: { key, name, state, words, robot } }) => html`
   </div>
 `;
 
+/** Show the robot with what was guessed of it. @type {(id: string, name: string) => void} */
+function correct(id, name) {
+  robotsAreOpen.value = false;
+  openStored({ id, name });
+}
+
 /** @param {{ robot: Robot }} props */
 function Stored({ robot }) {
   // A stored robot has its id as its name.
   const { name: id, title, description, hidden, body } = robot;
-  const isCorrected = corrected.value === id;
   const refused = refusals.value[id];
   /** @param {{ target: HTMLInputElement }} event */
   const onName = ({ target }) => {
@@ -109,8 +129,7 @@ function Stored({ robot }) {
         <a class="link" href=${fileOf(id, "xml")} download="" aria-label=${`MJCF of ${title}`}>MJCF</a>
         <a class="link" href=${fileOf(id, "zip")} download="" aria-label=${`URDF of ${title}`}>URDF</a>
         ${isOperator.value && !body && html`
-          <button class="link" aria-label=${`Correct ${title}`} aria-expanded=${isCorrected}
-            onClick=${() => correct(isCorrected ? null : id)}>Correct…</button>
+          <button class="link" aria-label=${`Correct ${title}`} onClick=${() => correct(id, title)}>Correct…</button>
         `}
         ${isOperator.value && html`
           <button class="link" aria-label=${`${hidden ? "Show" : "Hide"} ${title}`}
@@ -118,7 +137,6 @@ function Stored({ robot }) {
           <button class="link" aria-label=${`Delete ${title}`} onClick=${() => deleteRobot(id)}>Delete</button>
         `}
       </div>
-      ${isCorrected && html`<${CorrectRobot} />`}
       ${refused && html`<p id=${`refused-${id}`} class="mistake" role="alert">${refused}</p>`}
     </li>
   `;

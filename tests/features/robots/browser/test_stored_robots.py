@@ -114,85 +114,23 @@ def test_another_page_learns_of_a_new_robot(dashboard: Dashboard, server: Servin
     expect(choice.get_by_role("option", name="Fido")).to_have_count(1)
 
 
-def test_a_file_is_dropped_corrected_and_trained(
+def test_a_robot_that_was_saved_elsewhere_is_stored_as_it_is(
     dashboard: Dashboard, server: Serving, tmp_path: Path
 ) -> None:
-    page = dashboard.page
-    files = {"spot.xml": dog(), "bad.xml": "<mujoco/>"}
-    for name, text in files.items():
-        (tmp_path / name).write_text(text)
-    dashboard.open(
-        server.link(**{**SHORT, "depth": "study", "tab": "train", "simulator": "mujoco"})
-    )
+    (tmp_path / "rex.json").write_text(json.dumps({"robot": {"preset": "dog", "femur_m": 0.09}}))
+    (tmp_path / "bad.json").write_text("{}")
+    dashboard.open(server.link(depth="study", tab="train"))
     robots = listed(dashboard)
     chooser = robots.get_by_label("Robot from a file…")
-    chooser.set_input_files(tmp_path / "bad.xml")
-    expect(robots.get_by_role("alert")).to_contain_text("bad.xml")
+    chooser.set_input_files(tmp_path / "bad.json")
+    expect(robots.get_by_role("alert")).to_contain_text("bad.json")
     assert [complaint.split()[0] for complaint in dashboard.complaints] == ["422"]
     dashboard.complaints.clear()
-    robots.get_by_role("button", name="Dismiss bad.xml").click()
-    drop(dashboard, robots, "spot.xml", files["spot.xml"])
-    expect(robots.get_by_role("status")).to_contain_text("spot.xml is spot here.")
-    guessed = robots.get_by_text(re.compile(r"Guessed: \d"))
-    guessed.click()
-    expect(robots.get_by_role("status").get_by_role("listitem").first).to_be_visible()
-    robots.get_by_role("button", name="Choose").click()
-    (before,) = dashboard.get("/api/v1/robots")["items"]
-
-    robots.get_by_role("button", name="Correct spot").click()
-    forward = robots.get_by_label("Forward")
-    expect(forward).to_have_value("")
-    assert dashboard.violations_in_both_themes() == []
-    expect(robots.get_by_role("checkbox", checked=True)).to_have_count(4)
-    forward.select_option("-x")
-    robots.get_by_label("Largest torque, N·m").fill("lots")
-    again = robots.get_by_role("button", name="Read it again")
-    again.click()
-    expect(robots.get_by_role("alert")).to_contain_text("Torque must be a number")
-    robots.get_by_label("Largest torque, N·m").fill("12")
-    again.click()
-    expect(robots.get_by_role("alert")).to_have_count(0)
-    dashboard.eventually(
-        lambda: dashboard.get("/api/v1/robots")["items"][0]["id"] != before["id"], "another robot"
-    )
-    (after,) = dashboard.get("/api/v1/robots")["items"]
-    assert after["choices"] == {**dict.fromkeys(after["choices"]), **CHOSEN}
-    # Until the page has it, nothing can be started.
-    expect(page).to_have_url(re.compile(f"robot={after['id']}"))
-    expect(robots.get_by_role("button", name="Chosen")).to_be_visible()
-    page.keyboard.press("Escape")
-    expect(dashboard.button("Edit the body…")).to_be_disabled()
-
-    dashboard.button("Train, don’t race").click()
-    dashboard.eventually(
-        lambda: (
-            [
-                run["config"]["robot"].get("id")
-                for run in dashboard.get("/api/v1/trainings")["items"]
-                if run["state"] == "finished"
-            ]
-            == [after["id"]]
-        ),
-        "a training of the robot from the file",
-    )
-
-
-CHOSEN = {"forward": "-x", "servo_torque_nm": 12}
-
-
-def drop(dashboard: Dashboard, robots: Locator, name: str, text: str) -> None:
-    """Drop a file on the place for it."""
-    files = dashboard.page.evaluate_handle(
-        """([name, text]) => {
-          const files = new DataTransfer();
-          files.items.add(new File([text], name));
-          return files;
-        }""",
-        [name, text],
-    )
-    place = robots.locator(".robots-drop")
-    place.dispatch_event("dragover", {"dataTransfer": files})
-    place.dispatch_event("drop", {"dataTransfer": files})
+    robots.get_by_role("button", name="Dismiss bad.json").click()
+    chooser.set_input_files(tmp_path / "rex.json")
+    expect(robots.get_by_role("status")).to_contain_text("rex.json is rex here.")
+    expect(robots.get_by_label("Name of rex")).to_be_visible()
+    assert dashboard.violations() == []
 
 
 def test_the_list_on_a_phone(flat_browser: Browser, server: Serving) -> None:
@@ -205,8 +143,7 @@ def test_the_list_on_a_phone(flat_browser: Browser, server: Serving) -> None:
             dog(),
         )
         robots = listed(dashboard)
-        robots.get_by_role("button", name="Correct Spot").tap()
-        expect(robots.get_by_label("Forward")).to_be_visible()
+        expect(robots.get_by_role("button", name="Correct Spot")).to_be_visible()
         assert dashboard.scroll_width() == NARROW["width"]
         assert dashboard.violations() == []
         assert dashboard.small_targets(THUMB_PX) == []
