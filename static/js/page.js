@@ -139,7 +139,7 @@ export const isStill = signal(false);
  * root `world` [m]. `of` counts the lists of points; `margins_px` stay free
  * around what is shown.
  * @typedef {{
- *   world: string, centre_m: number[], radius_m: number, height_m: number, points: number[][], of: number,
+ *   world: string, centre_m: number[], rims_m: number[][], points: number[][], of: number,
  *   isTurning: boolean, turned_deg: number, margins_px: { side: number, top: number, bottom: number },
  * }} Inspection
  */

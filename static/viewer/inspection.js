@@ -2,8 +2,8 @@
 // someone turns it; the page is told where points of it are in the picture, whenever that has changed.
 // Assumptions about viser's client are listed and tested in hexapods/drawing/viser_internals.
 //
-//   from the parent   {type: "hexapods:inspect", inspection: null, or {world, centre_m, radius_m, height_m: of the
-//                     upright cylinder that is to be in view, points: [[x, y, z]], of: their number in the page's
+//   from the parent   {type: "hexapods:inspect", inspection: null, or {world, centre_m, rims_m: [[radius, height]] of
+//                     level circles that are to be in view, points: [[x, y, z]], of: their number in the page's
 //                     lists, isTurning, turned_deg: by which the page wants it turned, margins_px: {side, top, bottom}
 //                     that stay free around it}}
 //   to the parent     {type: "hexapods:places", places: {of, points: [{x, y}, or null behind the camera], azimuth_deg}}
@@ -50,29 +50,35 @@
     return { wide: half(width, 2 * side), high: half(height, top + bottom), lower: (perPixel * (top - bottom)) / 2 };
   };
 
-  /** Whether the cylinder is in view from a distance: both of its rims. */
-  const fits = (distance_m, { wide, high, lower }) => {
-    const { radius_m, height_m } = inspection;
+  /** Points of the circles as a camera at a distance sees them: to the side, up, and how deep. */
+  const seenFrom = (distance_m) => {
+    const { rims_m, centre_m } = inspection;
     const [sine, cosine] = [Math.sin(ELEVATION_RAD), Math.cos(ELEVATION_RAD)];
-    return Array.from({ length: CORNERS }, (_, n) => (2 * Math.PI * n) / CORNERS).every((angle) => {
-      const [side, near] = [radius_m * Math.sin(angle), radius_m * Math.cos(angle)];
-      return [-height_m / 2, height_m / 2].every((up) => {
-        const depth = distance_m - near * cosine - up * sine;
-        // The camera is moved up by as much as the middle of the free picture is lower.
-        const above = up * cosine - near * sine - lower * (distance_m - depth);
-        return depth > 0 && Math.abs(side) <= depth * wide && Math.abs(above) <= depth * high;
-      });
-    });
+    return Array.from({ length: CORNERS }, (_, n) => (2 * Math.PI * n) / CORNERS).flatMap((angle) =>
+      rims_m.map(([radius_m, height_m]) => {
+        const [side, near, up] = [radius_m * Math.sin(angle), radius_m * Math.cos(angle), height_m - centre_m[2]];
+        return { side, up: up * cosine - near * sine, depth: distance_m - near * cosine - up * sine };
+      }));
   };
 
-  const distanceToFit = () => {
-    const size = inspection.radius_m + inspection.height_m;
-    const limits = tangents();
-    let [near, far] = [0, 100 * size];
+  /** How far up the camera must be moved, so that the circles are in view from a distance; null if they are not. */
+  const shiftAt = (distance_m, { wide, high, lower }) => {
+    let [least, most] = [-Infinity, Infinity];
+    for (const { side, up, depth } of seenFrom(distance_m)) {
+      if (depth <= 0 || Math.abs(side) > depth * wide) return null;
+      least = Math.max(least, up - depth * (high - lower));
+      most = Math.min(most, up + depth * (high + lower));
+    }
+    return least <= most ? (least + most) / 2 : null;
+  };
+
+  /** From how near the circles are in view. */
+  const distanceToFit = (limits) => {
+    let [near, far] = [0, 100 * Math.max(...inspection.rims_m.flat())];
     for (let step = 0; step < 40; step += 1) {
       const middle = (near + far) / 2;
-      if (fits(middle, limits)) far = middle;
-      else near = middle;
+      if (shiftAt(middle, limits) === null) near = middle;
+      else far = middle;
     }
     return far;
   };
@@ -90,7 +96,8 @@
   const frame = (azimuth_rad) => {
     const { cameraControl, camera, requestRender } = viewer();
     const matrix = toThree();
-    const distance = distanceToFit();
+    const limits = tangents();
+    const distance = distanceToFit(limits);
     const [x, y, z] = inspection.centre_m;
     const flat = distance * Math.cos(ELEVATION_RAD);
     const at = vector([
@@ -100,7 +107,7 @@
     Object.assign(camera, { near: distance / 100, far: distance * 100 });
     camera.updateProjectionMatrix();
     cameraControl.setLookAt(at.x, at.y, at.z, target.x, target.y, target.z, false);
-    cameraControl.setFocalOffset(0, -distance * tangents().lower, 0, false);
+    cameraControl.setFocalOffset(0, -shiftAt(distance, limits), 0, false);
     // At once: what is told next is of this place.
     cameraControl.update(0);
     camera.updateMatrixWorld();
@@ -171,9 +178,9 @@
     requestRender();
   };
 
-  const keyOf = ({ centre_m, radius_m, height_m, margins_px }) => {
+  const keyOf = ({ centre_m, rims_m, margins_px }) => {
     const { clientWidth, clientHeight } = viewer().canvas;
-    return JSON.stringify([centre_m, radius_m, height_m, margins_px, clientWidth, clientHeight, viewer().camera.fov]);
+    return JSON.stringify([centre_m, rims_m, margins_px, clientWidth, clientHeight, viewer().camera.fov]);
   };
 
   const step = (now) => {

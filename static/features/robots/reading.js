@@ -60,7 +60,7 @@ const NOT_FOUND = 404;
 /** What the server has read; null until then. @type {Signal<Reading | null>} */
 export const reading = signal(null);
 /** How far its parts reach. @type {Signal<Extent>} */
-export const extent = signal({ radius_m: 1, height_m: 1 });
+export const extent = signal({ radius_m: 1, height_m: 1, rims_m: [] });
 /** What a person has decided, perhaps not read yet. @type {Signal<ReadingChoices>} */
 export const choices = signal({});
 /** Those with which it was read that is shown. @type {Signal<ReadingChoices>} */

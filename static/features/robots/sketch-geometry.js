@@ -4,8 +4,9 @@
 
 /** @typedef {[number, number, number]} Point3 */
 /**
- * How far it reaches from the axis of the turntable, and up [m].
- * @typedef {{ radius_m: number, height_m: number }} Extent
+ * How far it reaches from the axis of the turntable, and up [m]; `rims_m`: of slices from the ground up how far each
+ * reaches, and its upper end.
+ * @typedef {{ radius_m: number, height_m: number, rims_m: [number, number][] }} Extent
  */
 
 /** Directions in which forward can be dragged [°]. */
@@ -13,8 +14,9 @@ export const STEP_DEG = 15;
 /** Of the arrow, in radii of the robot: begin, begin of its head, tip, and half the widths of shaft and head. */
 const ARROW = { from: 0.72, neck: 1.16, to: 1.34, shaft: 0.05, head: 0.13 };
 /** The radius of what is to be in view, the arrow too, in radii of the robot. */
-const SHOWN = 1.2;
+const SHOWN = 1.36;
 const SMALLEST_M = 0.01;
+const SLICES = 6;
 const DIGITS = 2;
 
 const PART = /\/part\/(\d+)$/;
@@ -31,21 +33,30 @@ const verticesIn = ({ frames }) => frames.flatMap(({ messages }) => messages)
   .map(({ props: { vertices } }) => (vertices instanceof Float32Array ? vertices
     : new Float32Array(vertices.buffer.slice(vertices.byteOffset, vertices.byteOffset + vertices.byteLength))));
 
+/** The distance from the axis, and the height, of each vertex. @param {Frames} scene @returns {[number, number][]} */
+const reachesIn = (scene) => verticesIn(scene).flatMap((vertices) =>
+  Array.from({ length: Math.floor(vertices.length / 3) }, (_, n) => /** @type {[number, number]} */ (
+    [Math.hypot(vertices[3 * n], vertices[3 * n + 1]), vertices[3 * n + 2]])));
+
 /** How far the parts of a scene reach. @param {Frames} scene @returns {Extent} */
 export function extentOf(scene) {
-  let [radius, height] = [0, 0];
-  for (const vertices of verticesIn(scene)) {
-    for (let at = 0; at + 2 < vertices.length; at += 3) {
-      radius = Math.max(radius, Math.hypot(vertices[at], vertices[at + 1]));
-      height = Math.max(height, vertices[at + 2]);
-    }
+  const reaches = reachesIn(scene);
+  const most = (/** @type {number[]} */ values) => rounded(values.reduce((a, b) => Math.max(a, b), SMALLEST_M));
+  const radius_m = most(reaches.map(([radius]) => radius));
+  const height_m = most(reaches.map(([, height]) => height));
+  const radii = Array.from({ length: SLICES }, () => 0);
+  for (const [radius, height] of reaches) {
+    const slice = Math.min(Math.max(Math.floor((SLICES * height) / height_m), 0), SLICES - 1);
+    radii[slice] = Math.max(radii[slice], radius);
   }
-  return { radius_m: rounded(Math.max(radius, SMALLEST_M)), height_m: rounded(Math.max(height, SMALLEST_M)) };
+  const rims_m = radii.map((radius, n) => /** @type {[number, number]} */ (
+    [rounded(Math.max(radius, SMALLEST_M / SLICES)), (height_m * (n + 1)) / SLICES]));
+  return { radius_m, height_m, rims_m };
 }
 
-/** What the camera is to have in view. @param {Extent} extent */
-export const viewOf = ({ radius_m, height_m }) =>
-  ({ centre_m: [0, 0, height_m / 2], radius_m: SHOWN * radius_m, height_m });
+/** What is to be in view: the robot, and on the ground the arrow and the numbers. @param {Extent} extent */
+export const viewOf = ({ radius_m, height_m, rims_m }) =>
+  ({ centre_m: [0, 0, height_m / 2], rims_m: [[SHOWN * radius_m, 0], ...rims_m] });
 
 /** A point of the ground, by its direction from forward, anticlockwise, and distance. */
 /** @type {(angle_deg: number, distance_m: number, side_m?: number) => Point3} */

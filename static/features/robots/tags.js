@@ -50,12 +50,16 @@ function placeOfTopic(reading, topic, { radius_m, height_m }) {
   return [0, 0, 0.8 * height_m];
 }
 
+/** Topics that have no place on the robot: they are in the list alone, unless they offer something. */
+const ELSEWHERE = ["file", "meshes", "size"];
+
 /**
  * The guesses of a reading as tags; those that name parts come first.
  * @type {(reading: Reading, extent: Extent) => Tag[]}
  */
 export function tagsOf(reading, extent) {
-  const guesses = reading.notes.map((note, index) => ({ note, index })).filter(({ note }) => note.kind === "guess");
+  const guesses = reading.notes.map((note, index) => ({ note, index })).filter(({ note }) =>
+    note.kind === "guess" && (!ELSEWHERE.includes(note.topic) || note.offer || note.parts.length));
   const isPlaced = (/** @type {ReadingNote} */ { parts, offer }) => (offer ? 2 : 0) + (parts.length ? 1 : 0);
   return guesses
     .toSorted((a, b) => isPlaced(b.note) - isPlaced(a.note) || a.index - b.index).slice(0, MOST_TAGS)

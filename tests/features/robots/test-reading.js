@@ -107,16 +107,18 @@ test("a robot is told in a line, and a new reading in a sentence", () => {
 
 // ---- places
 
-const EXTENT = { radius_m: 0.5, height_m: 0.2 };
+const EXTENT = { radius_m: 0.5, height_m: 0.2, rims_m: /** @type {[number, number][]} */ ([]) };
 
 test("the extent of a scene is that of its parts, and changes little with small changes", () => {
   const mesh = (/** @type {string} */ name, /** @type {number[]} */ vertices) =>
     ({ type: "MeshMessage", name, props: { vertices: new Float32Array(vertices) } });
   const messages = [mesh("/world/sketch/part/0", [0.3, 0.4, 0.1, 0, 0, 0.196]), mesh("/world/sketch/table", [9, 9, 9])];
   const frames = [{ time_s: 0, messages, follow: {}, scene: null }];
-  assert.deepEqual(extentOf({ frames }), EXTENT);
-  assert.deepEqual(extentOf({ frames: [] }), { radius_m: 0.01, height_m: 0.01 });
-  assert.deepEqual(viewOf(EXTENT), { centre_m: [0, 0, 0.1], radius_m: 0.6, height_m: 0.2 });
+  const { rims_m, ...extent } = extentOf({ frames });
+  assert.deepEqual(extent, { radius_m: 0.5, height_m: 0.2 });
+  assert.deepEqual(rims_m.map(([radius]) => radius > 0.1), [false, false, false, true, false, false]);
+  assert.equal(extentOf({ frames: [] }).radius_m, 0.01);
+  assert.deepEqual(viewOf(EXTENT), { centre_m: [0, 0, 0.1], rims_m: [[0.68, 0]] });
 });
 
 test("the arrow lies on the ground in its direction, and is dragged to the nearest of 24", () => {
