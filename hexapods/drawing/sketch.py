@@ -14,7 +14,7 @@ from hexapods.domain.robot_model import ModelMesh, Vector
 from hexapods.domain.types import FloatArray
 from hexapods.drawing.colormap import Rgb, rgb
 from hexapods.drawing.robot_mesh import RobotMesh
-from hexapods.drawing.shapes import Shape, cylinder, joined
+from hexapods.drawing.shapes import Shape, disc, joined
 from hexapods.drawing.track import LAMP, WORLD, draw_ground
 from hexapods.imports.imported import Sketch, SketchFoot, SketchPart
 
@@ -24,8 +24,10 @@ GROUP_COLORS = ("#7d63f7", "#e25c8d", "#25a493", "#c08a1e", "#6a8aac", "#9a9a2a"
 PART: Rgb = (118, 126, 140)
 FOOT: Rgb = (255, 176, 32)
 _TABLE: Rgb = (150, 160, 178)
-TABLE_MARGIN, _TABLE_HALF_M = 1.12, 0.004
-"""Radius of the turntable relative to that of the robot, and half its height [m]."""
+TABLE_MARGIN, _TABLE_CORNERS = 1.12, 96
+"""Radius of the turntable relative to that of the robot."""
+_ABOVE_M = 0.0005
+"""Height of the turntable over the ground, for a robot of the usual size."""
 _USUAL_M = 0.35
 """Radius of a robot for which the lamp of the stage stands right."""
 
@@ -49,14 +51,14 @@ def draw_sketch(
     lamp.position = (x * size, y * size, z * size)
     scene = server.scene
     scene.add_frame(SKETCH_ROOT, show_axes=False)
-    table = cylinder(radius_m * TABLE_MARGIN, _TABLE_HALF_M * size)
+    table = disc(radius_m * TABLE_MARGIN, _TABLE_CORNERS)
     scene.add_mesh_simple(
         f"{SKETCH_ROOT}/table",
         table.vertices,
         table.faces,
         color=_TABLE,
         opacity=0.55,
-        position=(0.0, 0.0, -_TABLE_HALF_M * size),
+        position=(0.0, 0.0, _ABOVE_M * size),
         cast_shadow=False,
     )
     colors = _colors(groups)
