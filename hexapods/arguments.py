@@ -176,7 +176,7 @@ def check_savable(config: C) -> C:
 
 
 def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
-    """Return the robot of a file: MJCF or URDF, alone or in a folder or a zip, or a document.
+    """Return the robot of a file: MJCF, URDF or xacro, alone, in a folder or a zip; or a document.
 
     A document (`.json`) is what `hexapods robots export` writes. From then on `{"id": …}` is this
     robot too, also in tables and races that were made with it.

@@ -1,12 +1,15 @@
-"""Robots from files of strangers: MJCF or URDF, alone or in a zip with meshes.
+"""Robots from files of strangers: MJCF, URDF or xacro, alone or in a zip with meshes.
 
 `child.read_robot_file` is what the rest of the product calls: it reads a file in a child process
 with limits (docs/decisions/0011). `folder` packs a folder or a repository into such a file. In the
 child `reading` goes through the steps:
 
-- `upload` unpacks; `xml` reads the document within bounds; `mjcf` and `urdf` keep of it what
-  describes a body; `mesh_files` and `decimation` read and simplify meshes (`stl`, `obj`,
-  `collada`, `gltf`).
+- `upload` unpacks, and finds files by the ends of their paths. `documents` chooses the document
+  that is the robot, which `xml` reads within bounds, `lenient_xml` first if it is not well-formed;
+  `includes` puts what MJCF includes in its place, and `xacro` expands macros, by `xacro_scope`,
+  `expressions` and `yaml_values`. `other_formats` says what any other file is.
+- `mjcf` and `urdf` keep of a document what describes a body; `mesh_files` and `decimation` read
+  and simplify meshes (`stl`, `obj`, `collada`, `gltf`).
 - `compiling` has MuJoCo turn it into numbers, in the `units` of the file and without
   `incomplete_shapes`; `posed_robot` is the robot with all joints at 0.
 - `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward, by

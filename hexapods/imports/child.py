@@ -69,7 +69,7 @@ def read_robot_file(
     choices: Choices = AS_FOUND,
     limits: ReadingLimits = LIMITS,
 ) -> ImportedRobot:
-    """Read a robot from an MJCF or URDF file, alone or in a zip with meshes.
+    """Read a robot from an MJCF, URDF or xacro file, alone or in a zip with meshes.
 
     Args:
         data: the file.

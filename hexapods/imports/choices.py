@@ -11,8 +11,10 @@ from hexapods.domain.gait import AnyGait
 from hexapods.domain.records import Record, from_json, to_json
 
 MAX_NAMES = 100
-NameInFile = Annotated[str, MinLen(1), MaxLen(200)]
+MAX_FILE_NAME = 200
+NameInFile = Annotated[str, MinLen(1), MaxLen(MAX_FILE_NAME)]
 Direction = Annotated[str, MinLen(1), MaxLen(20)]
+ArgumentText = Annotated[str, MaxLen(1000)]
 Angle = Annotated[float, Ge(-7.0), Le(7.0)]
 Axis = Literal["x", "-x", "y", "-y", "z", "-z"]
 AngleUnit = Literal["rad", "deg"]
@@ -24,6 +26,7 @@ class Choices(Record):
 
     Attributes:
         file: of several robots in a zip the path of the one that is meant.
+        arguments: values of arguments of a xacro, `$(arg …)`, by name.
         scale: factor of all lengths of the file; 0.001 reads millimetres. Inertias change with its
             square, and masses that follow from densities with its cube; masses and torques that
             the file gives stay.
@@ -47,6 +50,7 @@ class Choices(Record):
     """
 
     file: NameInFile | None = None
+    arguments: Annotated[dict[NameInFile, ArgumentText], MaxLen(MAX_NAMES)] | None = None
     scale: Annotated[float, Ge(0.001), Le(1000.0)] | None = None
     up: Axis | None = None
     angle_unit: AngleUnit | None = None

@@ -149,12 +149,17 @@ class RobotReading(Record):
         problem: why there is no robot; null if there is one.
         notes: what was guessed and repaired, as far as it was read.
         sketch: bodies and feet.
+        documents: paths in the zip of all documents that could be the robot, fit for
+            `Choices.file`.
+        arguments: values of the arguments of a xacro, fit for `Choices.arguments`.
     """
 
     robot: ImportedRobot | None
     problem: str | None
     notes: tuple[Note, ...]
     sketch: Sketch
+    documents: tuple[str, ...] = ()
+    arguments: dict[str, str] = field(default_factory=dict)
 
     def valid_robot(self) -> ImportedRobot:
         """Return the robot.

@@ -20,7 +20,6 @@ _MAX_NUMBER = 1e12
 _MAX_NAMES = 100
 """Names that a note is about."""
 _REFUSED = {
-    "include": "it includes another file, which is not followed: merge it into this one",
     "replicate": "copies by <replicate> are not made: write the bodies themselves",
     "composite": "a robot here is made of rigid bodies, not of <composite>",
     "flexcomp": "a robot here is made of rigid bodies, not of <flexcomp>",

@@ -2,27 +2,25 @@
 
 import posixpath
 import re
-from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.text import MAX_NAME, visible
 from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled, compile_document
+from hexapods.imports.documents import RobotDocument, choose_document
 from hexapods.imports.exported_settings import ExportedSettings, read_exported_settings
 from hexapods.imports.imported import ImportedRobot, RobotReading
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import clean_mjcf
-from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.notes import Notes, listed
 from hexapods.imports.sketch import sketch_robot
-from hexapods.imports.upload import MAX_DOCUMENT_BYTES, Upload, last_part
-from hexapods.imports.urdf import check_expanded, clean_urdf
-from hexapods.imports.xml import Element, read_xml, write_xml
+from hexapods.imports.upload import Upload, last_part
+from hexapods.imports.urdf import clean_urdf
+from hexapods.imports.xml import Element, write_xml
 
-_MAX_DOCUMENTS = 60
-_MAX_DOCUMENTS_BYTES = 16 << 20
-_ROOTS = ("mujoco", "robot")
 _HOME_FOLDER = re.compile(r"(?:[a-zA-Z]:)?[/\\]+(?:home|users)[/\\]+[^/\\]*[/\\]*", re.IGNORECASE)
 _NO_NAMES = ("mujoco model", "robot", "scene")
 
@@ -40,7 +38,19 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
             "file",
             f"left out what has a path that leads out of the zip: {listed(upload.outside)}",
         )
-    path, root = _document(upload, choices, notes)
+    document = choose_document(upload, choices, notes)
+    try:
+        reading = _read(document, upload, choices, notes)
+    except InvalidInput as error:
+        raise type(error)(document.with_missing(str(error))) from error
+    problem = None if reading.problem is None else document.with_missing(reading.problem)
+    return replace(
+        reading, problem=problem, documents=document.documents, arguments=document.arguments
+    )
+
+
+def _read(document: RobotDocument, upload: Upload, choices: Choices, notes: Notes) -> RobotReading:
+    path, root = document.path, document.root
     meshes = MeshFiles(upload, path, notes)
     settings = read_exported_settings(root)
     if root.tag == "mujoco":
@@ -108,65 +118,3 @@ def _name(named: str, path: str) -> str:
         if shown and shown.lower() not in _NO_NAMES:
             return shown
     return "robot"
-
-
-def _document(upload: Upload, choices: Choices, notes: Notes) -> tuple[str, Element]:
-    """Return the document that describes the robot, and its path.
-
-    Raises:
-        DamagedFile: if there is none.
-    """
-    if not upload.is_zip:
-        path = upload.paths[0]
-        root = read_xml(upload.read(path, MAX_DOCUMENT_BYTES), path)
-        _check_root(root, path)
-        return path, root
-    paths = upload.documents
-    if choices.file is not None:
-        if choices.file not in paths:
-            raise InvalidInput(f"the zip has no {quoted(choices.file)!r}; it has: {listed(paths)}")
-        root = read_xml(upload.read(choices.file, MAX_DOCUMENT_BYTES), choices.file)
-        _check_root(root, choices.file)
-        return choices.file, root
-    return _best_document(upload, paths, notes)
-
-
-def _best_document(upload: Upload, paths: Sequence[str], notes: Notes) -> tuple[str, Element]:
-    """Return the robot with the most joints among the documents of a zip."""
-    robots: list[tuple[tuple[int, int, int, str], str, Element]] = []
-    problems: list[str] = []
-    total = 0
-    for path in sorted(paths, key=lambda path: (path.count("/"), len(path)))[:_MAX_DOCUMENTS]:
-        total += upload.size(path)
-        if total > _MAX_DOCUMENTS_BYTES:
-            break
-        try:
-            root = read_xml(upload.read(path, MAX_DOCUMENT_BYTES), path)
-        except DamagedFile as error:
-            problems.append(str(error))
-            continue
-        if root.tag not in _ROOTS:
-            continue
-        includes = sum(1 for _ in root.all("include"))
-        joints = sum(1 for _ in root.all("joint"))
-        rank = (min(includes, 1), -joints, len(path), path)
-        robots.append((rank, path, root))
-    if not robots:
-        raise DamagedFile(problems[0]) if problems else upload.without_robot()
-    _, path, root = min(robots, key=lambda robot: robot[0])
-    if len(robots) > 1:
-        other_paths = listed(other for _, other, _ in robots if other != path)
-        notes.guess(
-            "file", f"of the documents in the zip the robot is {quoted(path)}, not: {other_paths}"
-        )
-    if root.tag == "robot":
-        check_expanded(root)
-    return path, root
-
-
-def _check_root(root: Element, path: str) -> None:
-    if root.tag not in _ROOTS:
-        raise DamagedFile(
-            f"{quoted(path)} begins with <{quoted(root.tag)}>; an MJCF file begins with <mujoco>, a"
-            " URDF with <robot>"
-        )

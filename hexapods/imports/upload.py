@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 from urllib.parse import unquote
 
 from hexapods.domain.errors import DamagedFile
-from hexapods.imports.notes import listed, quoted
+from hexapods.imports.notes import quoted
 
 DOCUMENTS = (".urdf", ".xml", ".mjcf", ".xacro")
 """Endings of files that may describe a robot."""
@@ -36,6 +36,7 @@ _MAX_ENTRIES = 10_000
 """Members of a zip of any kind."""
 _MAX_DIRECTORY_BYTES = 2 << 20
 _MAX_LINK_BYTES = 1000
+_START_BYTES = 300
 _MAX_PACKAGE_BYTES = 64 << 10
 _END = struct.Struct("<4s4H2LH")  # end of central directory record, without a comment
 _SCHEME = re.compile(r"([a-zA-Z][\w+.-]+):/+")
@@ -51,6 +52,7 @@ class Upload:
     """The files of an upload by path; a single document is one file.
 
     Attributes:
+        name: of the uploaded file.
         is_zip: whether it is a zip.
         paths: of all files.
         outside: paths of members that were left out, since they lead out of the zip.
@@ -69,6 +71,7 @@ class Upload:
         self.is_zip = data.startswith((b"PK\3\4", b"PK\5\6"))
         self._data, self._members = data, dict[str, zipfile.ZipInfo]()
         self._links: dict[str, zipfile.ZipInfo] = {}
+        self.name = last_part(file_name) or "robot.xml"
         self.outside: list[str] = []
         if self.is_zip:
             self._zip = _open(data)
@@ -76,7 +79,7 @@ class Upload:
                 self._add(info)
             self.paths: Sequence[str] = list(self._members)
         else:
-            self.paths = [last_part(file_name) or "robot.xml"]
+            self.paths = [self.name]
         self._by_name: dict[str, list[str]] = {}
         for path in [*self._members, *self._links]:
             self._by_name.setdefault(posixpath.basename(path).casefold(), []).append(path)
@@ -104,21 +107,16 @@ class Upload:
         """Paths of the files that may describe a robot."""
         if not self.is_zip:
             return [*self.paths]
-        documents = [path for path in self.paths if path.lower().endswith(DOCUMENTS)]
-        if not documents:
-            raise self.without_robot()
-        return documents
-
-    def without_robot(self) -> DamagedFile:
-        """Return the error for a zip without a robot."""
-        return DamagedFile(
-            f"the zip has no MJCF or URDF document ({', '.join(DOCUMENTS)}); it has: "
-            f"{listed(self.paths) or 'nothing'}"
-        )
+        return [path for path in self.paths if path.lower().endswith(DOCUMENTS)]
 
     def size(self, path: str) -> int:
         """Return the size of a file as the zip's directory says."""
         return self._members[path].file_size if self.is_zip else len(self._data)
+
+    @property
+    def start(self) -> bytes:
+        """The first bytes of the upload itself."""
+        return self._data[:_START_BYTES]
 
     def read(self, path: str, most_bytes: int) -> bytes:
         """Return a file's content.
@@ -172,11 +170,10 @@ class Upload:
             rest = plain[scheme.end() :]
             parts = self._in_package(rest) if scheme[1].lower() == "package" else rest.split("/")
         else:
-            together = posixpath.join(posixpath.dirname(document_path), plain)
-            path = posixpath.normpath(together)
-            if path in self._members:
+            if path := self.beside(wanted, document_path):
                 return path
-            parts = path.split("/")
+            folder = posixpath.dirname(document_path)
+            parts = posixpath.normpath(posixpath.join(folder, plain)).split("/")
         parts = [name for name in parts if name not in ("", ".", "..")]
         decoded = unquote("/".join(parts)).split("/")
         for ignores_case in (False, True):
@@ -184,6 +181,12 @@ class Upload:
                 if path_found := self._longest_match(names, ignores_case):
                     return self._target(path_found)
         return None
+
+    def beside(self, wanted: str, document_path: str) -> str | None:
+        """Return the path of the file at a path beside a document; None if there is none."""
+        folder = posixpath.dirname(document_path)
+        path = posixpath.normpath(posixpath.join(folder, wanted.strip().replace("\\", "/")))
+        return path if path in self._members else None
 
     def package_folder(self, name: str) -> str:
         """Return the path of the folder of a ROS package; if it is not in the zip, its name.

@@ -44,22 +44,6 @@ _MAX_TOLD = 100
 _WORLD = "world"
 """Name of a link that MuJoCo takes for the world."""
 _JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
-_XACRO = "http://www.ros.org/wiki/xacro"
-
-
-def check_expanded(root: Element) -> None:
-    """Check that a document is no unexpanded xacro.
-
-    Raises:
-        DamagedFile: if the document is a xacro.
-    """
-    for element in [root, *root.all()]:
-        is_macro = element.tag.startswith("xacro:")
-        if is_macro or any("${" in value for value in element.attributes.values()):
-            raise DamagedFile(
-                f"{element.place} is xacro, which is not expanded here: run `xacro robot.xacro > "
-                "robot.urdf`, and give the result"
-            )
 
 
 def clean_urdf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
@@ -68,7 +52,6 @@ def clean_urdf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
     Raises:
         DamagedFile: if its links are no tree, or it has too many links or shapes.
     """
-    check_expanded(root)
     _tell_of_mimics(root, notes)
     for parent in [root, *root.all()]:
         kept_tags = _KEPT.get(parent.tag, frozenset())

@@ -1,7 +1,8 @@
 """Reads XML of strangers within bounds, and writes it with the line of each element kept.
 
-Entities, document types and processing of other files do not exist here: each is refused, or
-ignored by the parser. MuJoCo's own parser sees only what `Document.text` wrote.
+What is not well-formed is repaired by `lenient_xml` where MuJoCo reads it too. Entities, document
+types and processing of other files do not exist here: each is refused, or ignored by the parser.
+MuJoCo's own parser sees only what `Document.text` wrote.
 """
 
 from collections.abc import Callable, Collection, Iterator
@@ -10,7 +11,9 @@ from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 from hexapods.domain.errors import DamagedFile
+from hexapods.imports.lenient_xml import Malformed, codec_of, decode, well_formed
 from hexapods.imports.notes import quoted
+from hexapods.imports.upload import last_part
 
 MAX_ELEMENTS = 20_000
 """Elements that are kept of a document."""
@@ -36,6 +39,7 @@ class Element:
         attributes: by name.
         children: in order.
         text: what is in it, of the tags whose text is kept.
+        file: path of the document that it is from, if that was included by another.
     """
 
     tag: str
@@ -43,6 +47,7 @@ class Element:
     attributes: dict[str, str] = field(default_factory=dict)
     children: list["Element"] = field(default_factory=list)
     text: str = ""
+    file: str = ""
 
     def __iter__(self) -> Iterator["Element"]:
         return iter(self.children)
@@ -70,21 +75,58 @@ class Element:
     def place(self) -> str:
         """Its tag, name and line, for messages: `<geom> "foot" in line 12`."""
         name = self.attributes.get("name", "")
-        return f"<{quoted(self.tag)}>{f' {quoted(name)}' if name else ''} in line {self.line}"
+        return f"<{quoted(self.tag)}>{f' {quoted(name)}' if name else ''} in line {self.where}"
+
+    @property
+    def where(self) -> str:
+        """Its line, and the document if that was included: `12 of leg.xml`."""
+        return f"{self.line} of {quoted(last_part(self.file))}" if self.file else str(self.line)
 
 
-def read_xml(data: bytes, label: str, texts: Collection[str] = ()) -> Element:
-    """Parse a document.
+def read_xml(
+    data: bytes, label: str, texts: Collection[str] = (), repairs: list[str] | None = None
+) -> Element:
+    """Parse a document, also one that is not well-formed if MuJoCo reads it.
 
     Args:
         data: the document.
         label: its name for messages.
         texts: tags of elements whose text is kept.
+        repairs: receives a sentence if it is not well-formed.
 
     Raises:
-        DamagedFile: if it is not well-formed, or exceeds a bound.
+        DamagedFile: if it cannot be parsed, or exceeds a bound.
     """
-    return _DocumentReader(label, texts).read(data)
+    try:
+        root, kinds = _parsed(data, label, texts)
+    except Malformed as error:
+        raise DamagedFile(f"{quoted(label)} is no whole XML document: {error}") from error
+    if repairs is not None and kinds:
+        repairs.append(f"{quoted(label)} is no proper XML, but could be read: {'; '.join(kinds)}")
+    return root
+
+
+def _parsed(data: bytes, label: str, texts: Collection[str]) -> tuple[Element, list[str]]:
+    """Return the root of a document, and what was repaired.
+
+    Raises:
+        Malformed: if it cannot be parsed.
+        DamagedFile: if it exceeds a bound.
+    """
+    codec_of(data)
+    try:
+        return _DocumentReader(label, texts).read(data), []
+    except (expat.ExpatError, ValueError, LookupError) as error:
+        if isinstance(error, DamagedFile):  # of a handler, and a ValueError too
+            raise
+    text, of_encoding = decode(data)
+    text, kinds = well_formed(text)
+    try:
+        root = _DocumentReader(label, texts).read(text.encode(), "utf-8")
+    except expat.ExpatError as error:
+        why = expat.ErrorString(error.code)
+        raise Malformed(f"line {error.lineno}: {why}") from error
+    return root, [*([of_encoding] if of_encoding else []), *kinds]
 
 
 class _DocumentReader:
@@ -94,28 +136,24 @@ class _DocumentReader:
         self._root: Element | None = None
         self._open: list[Element] = []
         self._count = 0
-        self._parser = expat.ParserCreate()
+
+    def read(self, data: bytes, encoding: str | None = None) -> Element:
+        """Parse a document; `encoding` counts more than what it says.
+
+        Raises:
+            ExpatError, ValueError, LookupError: if it is not well-formed, or its encoding unknown.
+            DamagedFile: if it exceeds a bound.
+        """
+        self._parser = expat.ParserCreate(encoding)
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
-        if texts:
+        if self._texts:
             self._parser.buffer_text = True
             self._parser.CharacterDataHandler = self._read_text
         self._parser.StartDoctypeDeclHandler = self._refuse_types
         self._parser.EntityDeclHandler = self._refuse_types
         self._parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
-
-    def read(self, data: bytes) -> Element:
-        try:
-            self._parser.Parse(data, True)
-        except expat.ExpatError as error:
-            why = expat.ErrorString(error.code)
-            raise DamagedFile(
-                f"{self._label} is no whole XML document: line {error.lineno}: {why}"
-            ) from error
-        except DamagedFile:  # of a handler
-            raise
-        except (ValueError, LookupError) as error:  # an encoding that does not exist
-            raise DamagedFile(f"{self._label} is no XML document: {error}") from error
+        self._parser.Parse(data, True)
         if self._root is None:
             raise DamagedFile(f"{self._label} has no element")
         return self._root
@@ -178,13 +216,13 @@ class Document:
 
     Attributes:
         text: the document.
-        lines: line in the original of each line.
+        lines: line in the original of each line, with the document if that was included.
     """
 
     text: str
-    lines: tuple[int, ...]
+    lines: tuple[str, ...]
 
-    def original_line(self, line: int) -> int | None:
+    def original_line(self, line: int) -> str | None:
         """Return the line in the original of a line, from 1."""
         return self.lines[line - 1] if 0 < line <= len(self.lines) else None
 
@@ -192,7 +230,7 @@ class Document:
 def write_xml(root: Element) -> Document:
     """Write a document."""
     texts: list[str] = []
-    lines: list[int] = []
+    lines: list[str] = []
 
     def write(element: Element) -> None:
         pairs = "".join(
@@ -200,12 +238,12 @@ def write_xml(root: Element) -> Document:
             for name, value in element.attributes.items()
         )
         texts.append(f"<{element.tag}{pairs}{'' if element.children else '/'}>")
-        lines.append(element.line)
+        lines.append(element.where)
         for child in element.children:
             write(child)
         if element.children:
             texts.append(f"</{element.tag}>")
-            lines.append(element.line)
+            lines.append(element.where)
 
     write(root)
     return Document("\n".join(texts), tuple(lines))

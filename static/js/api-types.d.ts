@@ -563,6 +563,12 @@ export interface ChoicesOutput {
    */
   file: string | null;
   /**
+   * values of arguments of a xacro, `$(arg …)`, by name.
+   */
+  arguments: {
+    [k: string]: string;
+  } | null;
+  /**
    * factor of all lengths of the file; 0.001 reads millimetres. Inertias change with its square, and masses that follow from densities with its cube; masses and torques that the file gives stay.
    */
   scale: number | null;
@@ -4064,6 +4070,16 @@ export interface RobotReadingView {
    * name of the file.
    */
   file: string;
+  /**
+   * paths in a zip of all documents that could be the robot, fit for `choices.file`.
+   */
+  documents: string[];
+  /**
+   * values of the arguments of a xacro, fit for `choices.arguments`.
+   */
+  arguments: {
+    [k: string]: string;
+  };
   choices: ChoicesOutput;
   /**
    * the robot; null if it cannot be stored as it is.

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
+from tests.imports.robots_in_parts import in_parts, in_xacro
 
 _NUMBERS = ("nan", "inf", "-0", "0", "-1", "1e308", "-1e308", "1e-308", "1e9", "99999999999")
 _NAMES = ("FL_hip_joint", "trunk", "../../etc/passwd", "package://a/b.stl", "x", "")
@@ -20,7 +21,7 @@ Damage = Callable[[bytes, np.random.Generator], bytes]
 
 
 def originals() -> list[bytes]:
-    """Return the files that are damaged: valid MJCF, URDF, and zips with meshes."""
+    """Return the files that are damaged: MJCF, URDF, and zips with meshes, includes and xacro."""
     mesh = '<visual><geometry><mesh filename="package://bug/meshes/hull.stl"/></geometry></visual>'
     asset = '<asset><mesh name="hull" file="hull.stl" scale="0.1 0.1 0.1"/></asset>'
     drawn = '<geom type="mesh" mesh="hull" contype="0" conaffinity="0"/>'
@@ -30,6 +31,8 @@ def originals() -> list[bytes]:
         bug().encode(),
         zipped({"bug/urdf/bug.urdf": bug(torso=mesh), "bug/meshes/hull.stl": hull}),
         zipped({"dog.xml": dog(sections=asset, on_torso=drawn), "hull.stl": hull}),
+        zipped(in_parts()),
+        zipped(in_xacro()),
     ]
 
 

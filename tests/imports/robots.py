@@ -10,7 +10,7 @@ import numpy as np
 
 from hexapods.imports.choices import AS_FOUND, Choices
 from hexapods.imports.compiling import silence_mujoco
-from hexapods.imports.imported import ImportedRobot
+from hexapods.imports.imported import ImportedRobot, RobotReading
 from hexapods.imports.reading import read_in_this_process
 
 Mounts = Mapping[str, tuple[float, float]]
@@ -28,9 +28,16 @@ HOME = "0 0 0.3 1 0 0 0" + 4 * " 0 0.7 -1.4"
 
 def read(data: str | bytes, name: str = "robot.xml", choices: Choices = AS_FOUND) -> ImportedRobot:
     """Read a robot in this process, since these are no stranger's."""
+    return inspect(data, name, choices).valid_robot()
+
+
+def inspect(
+    data: str | bytes, name: str = "robot.xml", choices: Choices = AS_FOUND
+) -> RobotReading:
+    """Read a robot, or why there is none, in this process."""
     silence_mujoco()
     content = data.encode() if isinstance(data, str) else data
-    return read_in_this_process(content, name, choices).valid_robot()
+    return read_in_this_process(content, name, choices)
 
 
 def dog(

@@ -11,7 +11,7 @@ NESTED = '<replicate count="60">' * 3 + '<geom size="0.01"/>' + "</replicate>" *
 @pytest.mark.parametrize(
     ("section", "said"),
     [
-        ('<include file="/etc/passwd"/>', "it includes another file"),
+        ('<include file="/etc/passwd"/>', "it includes passwd, which is another file"),
         (f"<worldbody>{NESTED}</worldbody>", "copies by <replicate> are not made"),
         (
             '<worldbody><body><composite type="cable" count="9 1 1"/></body></worldbody>',

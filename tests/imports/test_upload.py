@@ -195,5 +195,6 @@ def test_a_single_document_has_no_other_files() -> None:
     ],
 )
 def test_a_zip_without_a_document_is_refused(files: dict[str, str], said: str) -> None:
+    assert Upload(zipped(files), "robot.zip").documents == []
     with pytest.raises(DamagedFile, match=re.escape(said)):
-        _ = Upload(zipped(files), "robot.zip").documents
+        read(zipped(files), "robot.zip")

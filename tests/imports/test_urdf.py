@@ -10,7 +10,17 @@ from hexapods.domain.robot_model import MAX_TRIANGLES, ModelMesh
 from hexapods.domain.types import FloatArray, IntArray
 from hexapods.imports.choices import Choices
 from hexapods.imports.drawing import MAX_BASE64
-from tests.imports.robots import INERTIAL, SIX, box_triangles, bug, read, stl, text_stl, zipped
+from tests.imports.robots import (
+    INERTIAL,
+    SIX,
+    box_triangles,
+    bug,
+    inspect,
+    read,
+    stl,
+    text_stl,
+    zipped,
+)
 from tests.imports.same_motion import compare
 from tests.imports.test_mjcf import mentions
 
@@ -219,11 +229,15 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
         "broken.xml": "<mujoco>",
     }
 
-    best, chosen = read(zipped(files)), read(zipped(files), choices=Choices(file="small.urdf"))
+    chosen_file = Choices(file="small.urdf")
+    best, chosen = read(zipped(files)), read(zipped(files), choices=chosen_file)
 
     assert (best.file, len(best.legs)) == ("bug.urdf", 6)
-    assert mentions(best.guesses, "the robot is bug.urdf, not: scene.xml, small.urdf")
+    assert mentions(best.guesses, "the robot is bug.urdf, not: small.urdf")
+    assert inspect(zipped(files)).documents == ("bug.urdf", "small.urdf")
     assert (chosen.file, len(chosen.legs)) == ("small.urdf", 4)
+    documents = inspect(zipped(files), choices=chosen_file).documents
+    assert documents == ("small.urdf", "bug.urdf")
     with pytest.raises(InvalidInput, match=r"the zip has no 'big\.urdf'"):
         read(zipped(files), choices=Choices(file="big.urdf"))
 
@@ -232,11 +246,7 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
     ("text", "said"),
     [
         ("<robot/>", "the URDF has no <link>"),
-        (
-            '<robot xmlns:xacro="http://x"><xacro:include filename="a"/></robot>',
-            "is xacro, which is",
-        ),
-        ('<robot><link name="${prefix}base"/></robot>', "is xacro, which is not expanded"),
+        ('<robot><link name="${prefix}base"/></robot>', "in line 1: 'prefix' is not defined"),
         ('<robot><link name="a"/><link name="a"/></robot>', "each link needs a name of its own"),
         ('<robot><link name="a"/><link name="b"/></robot>', "2 have no parent: a, b"),
         (bug().replace('child link="coxa_lf"', 'child link="leg"'), "its child is no link: 'leg'"),

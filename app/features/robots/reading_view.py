@@ -80,6 +80,8 @@ class RobotReadingView(Answer):
     Attributes:
         id: of the file, which the server keeps for a while; empty for a body.
         file: name of the file.
+        documents: paths in a zip of all documents that could be the robot, fit for `choices.file`.
+        arguments: values of the arguments of a xacro, fit for `choices.arguments`.
         choices: choices by which it was read.
         robot: the robot; null if it cannot be stored as it is.
         problem: why it cannot be stored; null if it can.
@@ -92,6 +94,8 @@ class RobotReadingView(Answer):
 
     id: str
     file: str
+    documents: list[str]
+    arguments: dict[str, str]
     choices: Choices
     robot: ReadRobot | None
     problem: str | None
@@ -109,6 +113,8 @@ def reading_view(
     return RobotReadingView(
         id=file_id,
         file=file_name,
+        documents=list(reading.documents),
+        arguments=reading.arguments,
         choices=choices,
         robot=robot,
         problem=reading.problem,
@@ -129,6 +135,8 @@ def body_view(body: Robot, spec: AnyGait) -> RobotReadingView:
     return RobotReadingView(
         id="",
         file="",
+        documents=[],
+        arguments={},
         choices=AS_FOUND,
         robot=ReadRobot(
             name=body.name,

@@ -36,8 +36,9 @@ class KeptFile(NamedTuple):
 
 
 def is_model_file(data: bytes) -> bool:
-    """Whether data are a zip, or XML after blanks and a byte order mark: no JSON."""
-    return data.startswith(b"PK") or data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+    """Whether data are a file, of a robot or anything else, and no JSON after blanks and a mark."""
+    start = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return bool(data) and not start.startswith((b"{", b"["))
 
 
 class Readings:

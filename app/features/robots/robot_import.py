@@ -35,8 +35,8 @@ _UNNAMED = "Robot"
 _RETRY_S = 5
 _TOLD = (
     'send {"robot": …}, with a robot as in any request; the document of a robot as '
-    "`GET /robots/{id}/file` and `hexapods robots export` give it; or MJCF or URDF, alone or in a "
-    "zip with its meshes"
+    "`GET /robots/{id}/file` and `hexapods robots export` give it; or MJCF, URDF or xacro, alone "
+    "or in a zip with its meshes"
 )
 _NAMED = ("tripod", "tetrapod", "trot")
 """Gaits that are tried for a robot of which none is known, with their few groups."""
@@ -55,8 +55,8 @@ def import_robot(
     Args:
         store: receives it.
         data: `{"robot": …, "gait": …, "name": …}`, of which gait and name may be missing; the
-            document of a robot; `{"reading": id, "choices": …, "name": …}`; or MJCF or URDF, alone
-            or in a zip.
+            document of a robot; `{"reading": id, "choices": …, "name": …}`; or MJCF, URDF
+            or xacro, alone or in a zip.
         name: its name; by default what the data say, or `Robot`, made distinct.
         file: name of the file.
         readings: files that were looked at, where there are any.

@@ -56,12 +56,12 @@ def import_robot(
     data: Data = None,
     as_json: AsJson = False,
 ) -> int:
-    """Store a robot from MJCF or URDF, alone or in a folder or zip, or from a document.
+    """Store a robot from MJCF, URDF or xacro, alone or in a folder or zip, or from a document.
 
     `hexapods robots export` writes documents.
 
     Args:
-        file: MJCF, URDF, a folder or zip with one, a document, or JSON with `robot`
+        file: MJCF, URDF, xacro, a folder or zip with one, a document, or JSON with `robot`
         name: its name (default: that of the file)
         choices: what to take instead of what is guessed: '{"forward": "y", "scale": 0.1}'
         picture: file for a picture of what was read, also of a robot that is refused

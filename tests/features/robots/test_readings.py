@@ -138,7 +138,7 @@ def test_a_body_is_drawn_in_the_same_way(api: Api) -> None:
         (b'{"gait": "trot"}', "has no robot"),
         (b"PK\3\4 nonsense", "zip"),
         (b"<robot", "no whole XML document"),
-        (b"%PDF-1.7", "no JSON"),
+        (b"%PDF-1.7", "is a PDF: give the robot's URDF or MJCF"),
     ],
 )
 def test_what_is_no_robot_at_all_is_refused(api: Api, content: bytes, expected: str) -> None:
