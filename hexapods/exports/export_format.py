@@ -4,6 +4,7 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from hexapods.domain.errors import InvalidInput
@@ -11,8 +12,9 @@ from hexapods.domain.settings import DeclaredSetting, declared_fields
 from hexapods.exports.options import ExportOptions
 from hexapods.exports.recorded_walks import RecordedWalks
 from hexapods.extras import install_command, is_installed
-from hexapods.runs.clocks import Clock
+from hexapods.runs.clocks import CLOCK_SENTENCES, Clock
 from hexapods.shows.replay import ReplayView
+from hexapods.version import __version__
 
 Load = Literal["stream", "encode", "render"]
 """Cost of an export for a server.
@@ -39,14 +41,27 @@ class ExportSource:
     """A run that has ended, from which exports are made.
 
     Attributes:
+        run_id: id of the run.
         title: title of the run.
         walks: returns the recorded walks of the run. Called again for each chunk of a long file.
         replay: returns the frames of the run, of a race as timed by a clock.
     """
 
+    run_id: str
     title: str
     walks: Callable[[], RecordedWalks]
     replay: Callable[[Clock], EncodedReplay]
+
+    def about(self, clock: Clock) -> dict[str, str]:
+        """Return what a file's metadata say: its run, its clock, and what wrote it."""
+        name = self.walks().clock_of(clock)
+        return {
+            "run": self.run_id,
+            "title": self.title,
+            "clock": name,
+            "time": CLOCK_SENTENCES[name],
+            "written_by": f"Racing Hexapods {__version__}",
+        }
 
 
 def _write_here(write: Callable[[Path], None], name: str) -> bytes:
@@ -95,6 +110,7 @@ class FileType:
         )
 
 
+NO_METADATA: Mapping[str, str] = MappingProxyType({})
 IN_PROCESS = Execution()
 """Without limits, in this process."""
 

@@ -1,13 +1,16 @@
 """A recorded walk as an MCAP log, which tools for robots open (Foxglove, PlotJuggler, …).
 
 Topics: `/lane0/joint_states` with the angle and, where it is recorded, the torque of each joint
-(`foxglove.JointStates`), and `/tf` with the frames of all links (`foxglove.FrameTransforms`):
-`world`, `lane0` beside the other lanes, `lane0/torso` as it was recorded, `lane0/leg1_coxa`, ….
+(`foxglove.JointStates`), `/tf` with the frames of all links (`foxglove.FrameTransforms`): `world`,
+`lane0` beside the other lanes, `lane0/torso` as it was recorded, `lane0/leg1_coxa`, …, and
+`/robot_description` with the robot as URDF, whose links are these frames. Foxglove shows it by its
+topic and its schema, `std_msgs/String`; those of further lanes are `/lane1/robot_description`, ….
 """
 
 import heapq
+import json
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -17,16 +20,25 @@ import numpy as np
 from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
+from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray
-from hexapods.exports.export_format import IN_PROCESS, Execution
+from hexapods.exports.export_format import IN_PROCESS, NO_METADATA, Execution
+from hexapods.exports.options import DEFAULT_CLOCK
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
+from hexapods.exports.urdf import robot_urdf
 from hexapods.extras import needs
 from hexapods.physics.mjcf import compile_visual_model
-from hexapods.runs.clocks import Clock
+from hexapods.runs.clocks import CLOCK_SENTENCES, Clock
 
 LANE_WIDTH_M = 1.0
 """Between the origins of the lanes."""
 _CHUNK_BYTES = 1 << 16
+_DESCRIPTION = "/robot_description"
+_STRING_SCHEMA = {
+    "title": "std_msgs/String",
+    "type": "object",
+    "properties": {"data": {"type": "string"}},
+}
 _TORSO, _WORLD = "torso", "world"
 
 
@@ -41,7 +53,10 @@ class _Frame(NamedTuple):
 
 
 def mcap_log(
-    walks: RecordedWalks, clock: Clock, execution: Execution = IN_PROCESS
+    walks: RecordedWalks,
+    clock: Clock = DEFAULT_CLOCK,
+    execution: Execution = IN_PROCESS,
+    about: Mapping[str, str] = NO_METADATA,
 ) -> Iterator[bytes]:
     """Yield an MCAP file in chunks; time 0 of the run is the epoch.
 
@@ -49,6 +64,7 @@ def mcap_log(
         walks: the recorded walks.
         clock: times a race.
         execution: the frames that it may have at most, and whether it is still needed.
+        about: what the metadata `run` say beside the clock.
 
     Raises:
         InvalidInput: at the call, if it would have more frames.
@@ -66,7 +82,7 @@ def mcap_log(
         )
     file = tempfile.TemporaryFile()  # noqa: SIM115 - closed when all was read
     try:
-        _write(foxglove, walks, clock, file, execution.check)
+        _write(foxglove, walks, walks.clock_of(clock), file, execution.check, about)
     except BaseException:
         file.close()
         raise
@@ -80,8 +96,13 @@ def _chunks(file: Any) -> Iterator[bytes]:
             yield chunk
 
 
-def _write(
-    foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any, check: Callable[[], None]
+def _write(  # noqa: PLR0917 - all that the file depends on
+    foxglove: Any,
+    walks: RecordedWalks,
+    clock: Clock,
+    file: Any,
+    check: Callable[[], None],
+    about: Mapping[str, str],
 ) -> None:
     step_s, robot = walks.problem.robot.step_s, walks.problem.built_robot
     names = [joint.label for joint in legs_of(robot).joints]
@@ -95,6 +116,8 @@ def _write(
         ]
         agents = {f"lane{n}": title_of(lane.agent) for n, lane in enumerate(walks.lanes)}
         writer.write_metadata("agents", agents)
+        writer.write_metadata("run", {**about, "clock": clock, "time": CLOCK_SENTENCES[clock]})
+        _describe(foxglove, context, robot, len(walks.lanes))
         tracks = [_frames(lane, n, step_s, clock) for n, lane in enumerate(walks.lanes)]
         for frame in heapq.merge(*tracks, key=attrgetter("time_s")):
             check()
@@ -118,6 +141,17 @@ def _write(
                     _transform(messages, time, parent=_WORLD, child=lane, place=origin, turn=turn)
                 )
             tf.log(messages.FrameTransforms(transforms=transforms), log_time=nanoseconds)
+
+
+def _describe(foxglove: Any, context: Any, robot: Robot, lanes: int) -> None:
+    """Log the robot of each lane as URDF at time 0; its links are the frames of the lane."""
+    schema = foxglove.Schema(
+        name="std_msgs/String", encoding="jsonschema", data=json.dumps(_STRING_SCHEMA).encode()
+    )
+    for lane in range(lanes):
+        topic = f"/lane{lane}{_DESCRIPTION}" if lane else _DESCRIPTION
+        channel = foxglove.Channel(topic, message_encoding="json", schema=schema, context=context)
+        channel.log({"data": robot_urdf(robot, prefix=f"lane{lane}/")}, log_time=0)
 
 
 def _frames(lane: ExportedLane, number: int, step_s: float, clock: Clock) -> Iterator[_Frame]:

@@ -9,7 +9,17 @@ from hexapods.domain.settings import Setting, declared_fields
 from hexapods.runs.clocks import Clock
 
 _MIN_SIDE = 64
-_Clock = Annotated[Clock, Setting(title="Clock", help="Times a race; a training has one clock.")]
+DEFAULT_CLOCK: Clock = "free"
+"""Clock of all exports: robot time, the motion alone, in which servos and joints move without gaps.
+"""
+_Clock = Annotated[
+    Clock,
+    Setting(
+        title="Clock",
+        help="Times a race: free, the motion alone; paper and wall, with the time that decisions "
+        "take. A training has the motion alone.",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -26,19 +36,19 @@ class ExportOptions:
 
 
 @dataclass(frozen=True)
-class LaneOptions(ExportOptions):
-    """Option of an export: the lanes of a race that it contains."""
+class ClockOptions(ExportOptions):
+    """Option of an export: the clock by which a race is timed."""
+
+    clock: _Clock = DEFAULT_CLOCK
+
+
+@dataclass(frozen=True)
+class TrajectoryOptions(ClockOptions):
+    """Options of a table: its clock, and the lanes of a race that it contains."""
 
     lane: Annotated[
         int | None, Ge(0), Setting(title="Lane", help="Of a race, from 0 on; all if absent.")
     ] = None
-
-
-@dataclass(frozen=True)
-class ClockOptions(ExportOptions):
-    """Option of an export: the clock by which a race is timed."""
-
-    clock: _Clock = "paper"
 
 
 @dataclass(frozen=True)
@@ -71,4 +81,4 @@ class VideoOptions(ExportOptions):
             help="Times the run's own time; if absent 1, or as much more as a long run needs.",
         ),
     ] = None
-    clock: _Clock = "paper"
+    clock: _Clock = DEFAULT_CLOCK

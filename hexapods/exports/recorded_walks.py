@@ -63,6 +63,10 @@ class RecordedWalks:
     problem: WalkingProblem
     lanes: Sequence[ExportedLane]
 
+    def clock_of(self, clock: Clock) -> Clock:
+        """Return the clock by which the walks are timed: a training has the motion alone."""
+        return clock if isinstance(self.problem, RaceConfig) else "free"
+
     @classmethod
     def of_race(cls, config: RaceConfig, lanes: Iterable[LaneRecording]) -> Self:
         """Return the recorded walks of the lanes of a race."""

@@ -8,11 +8,11 @@ commands that export nothing should start fast.
 from collections.abc import Iterable
 
 from hexapods.exports.export_format import Execution, ExportFormat, ExportSource, FileType
-from hexapods.exports.options import ClockOptions, LaneOptions, VideoOptions
+from hexapods.exports.options import ClockOptions, TrajectoryOptions, VideoOptions
 
 
 def _trajectory(
-    source: ExportSource, file: FileType, options: LaneOptions, execution: Execution
+    source: ExportSource, file: FileType, options: TrajectoryOptions, execution: Execution
 ) -> Iterable[bytes] | Iterable[str]:
     from hexapods.exports import trajectory  # noqa: PLC0415
     from hexapods.exports.recorded_walks import checked_lane  # noqa: PLC0415
@@ -20,8 +20,9 @@ def _trajectory(
     del execution  # each chunk is computed only when it is read
     lanes = checked_lane(source.walks(), options.lane)
     if file.ending == "parquet":
-        return trajectory.trajectory_parquet(source.walks, lanes)
-    return trajectory.trajectory_csv(source.walks, lanes)
+        about = source.about(options.clock)
+        return trajectory.trajectory_parquet(source.walks, lanes, options.clock, about)
+    return trajectory.trajectory_csv(source.walks, lanes, options.clock)
 
 
 def _page(
@@ -38,7 +39,8 @@ def _video(
 ) -> Iterable[bytes]:
     from hexapods.exports.video import render_video  # noqa: PLC0415
 
-    return [render_video(source.walks(), options, file.ending, execution)]
+    about = source.about(options.clock)
+    return [render_video(source.walks(), options, file.ending, execution, about)]
 
 
 def _mcap(
@@ -47,7 +49,7 @@ def _mcap(
     from hexapods.exports.mcap_log import mcap_log  # noqa: PLC0415
 
     del file
-    return mcap_log(source.walks(), options.clock, execution)
+    return mcap_log(source.walks(), options.clock, execution, source.about(options.clock))
 
 
 EXPORTS: dict[str, ExportFormat] = {
@@ -64,7 +66,7 @@ EXPORTS: dict[str, ExportFormat] = {
         ),
         write=_trajectory,
         note="A row is a recorded frame; the columns have their units in their names.",
-        options=LaneOptions,
+        options=TrajectoryOptions,
     ),
     "page": ExportFormat(
         title="an HTML page that replays the run without a server",
@@ -92,8 +94,8 @@ EXPORTS: dict[str, ExportFormat] = {
         title="joint states and frames, for robotics tools",
         files=(FileType("mcap", "Robot log (MCAP)", "application/octet-stream", extra="mcap"),),
         write=_mcap,
-        note="It has `foxglove.JointStates` of each lane, and `foxglove.FrameTransforms` of all "
-        "links.",
+        note="It has `foxglove.JointStates` of each lane, `foxglove.FrameTransforms` of all links, "
+        "and the robot as URDF on `/robot_description`.",
         options=ClockOptions,
         load="encode",
         # The longest race has 4,800,000, which takes an hour and a gigabyte.

@@ -11,6 +11,7 @@ from hexapods.domain.errors import TooLong
 from hexapods.domain.records import to_json, to_json_bytes
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
 from hexapods.offline_page import data_block, digest, import_map, styles
+from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.recording import FIRST_STEPS, NEWEST_STEPS
 from hexapods.shows.replay import HIGHEST_LEVEL, ReplayView
 
@@ -102,7 +103,7 @@ def _recorded_segments(plan: ReplayView, level: int) -> list[int]:
 
 
 def _notes(plan: ReplayView, level: int) -> list[str]:
-    """Return sentences on the frames and steps that the page leaves out."""
+    """Return sentences on the clock, and on the frames and steps that the page leaves out."""
     notes = []
     if level > 0:
         rate = 1 / (plan.frame_s * 2**level)
@@ -112,7 +113,7 @@ def _notes(plan: ReplayView, level: int) -> list[str]:
             f"Only the first {FIRST_STEPS} and the newest {NEWEST_STEPS} steps of this practice "
             "are recorded."
         )
-    return notes
+    return [*notes, f"Times: {CLOCK_TITLES[plan.clock or 'free']}."]
 
 
 def _around_frames(title: str, content: str) -> tuple[bytes, bytes]:

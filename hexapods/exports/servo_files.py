@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from hexapods.exports.export_format import FileType
 from hexapods.exports.servo_walk import FRAME_S, ServoWalk
+from hexapods.runs.clocks import CLOCK_SENTENCES
 from hexapods.version import __version__
 
 _FRAME_MS = round(1000 * FRAME_S)
@@ -42,7 +43,7 @@ def arduino_header(walk: ServoWalk, title: str) -> Iterator[str]:
     yield f"""\
 /*
  * Servo pulses of a walk: {frames} frames of {_FRAME_MS} ms{slowed}.
- * {_comment(about)}.
+ * {_comment(about)}. {CLOCK_SENTENCES["free"]}
  * Servo map {_comment(walk.map.name)}. Written by Racing Hexapods {__version__}.
  *
  * WALK_US takes {2 * frames * len(servos)} bytes of flash memory. To walk:

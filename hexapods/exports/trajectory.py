@@ -5,7 +5,7 @@ and torso are the recorded numbers; feet follow from them by the forward kinemat
 it was built.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,14 +13,22 @@ from numpy.typing import NDArray
 
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
+from hexapods.domain.types import FloatArray
+from hexapods.exports.export_format import NO_METADATA
+from hexapods.exports.options import DEFAULT_CLOCK
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
 from hexapods.extras import needs
 from hexapods.files import DrainedBuffer
+from hexapods.runs.clocks import Clock
 
 _STEPS_PER_BLOCK = 8
 """About 130 frames, 90 kB of text, which stay in memory while a client reads them."""
 _ROWS_PER_GROUP = 16_384
 _INDEX = ("lane", "step", "time_s")
+_CLOCK = "clock"
+"""The last column."""
+_UNITS = (("_torque_nm", "N·m"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"))
+"""Units of columns, by how their names end."""
 _BODY = ("body_x_m", "body_y_m", "body_z_m", "body_qw", "body_qx", "body_qy", "body_qz")
 
 Look = Callable[[], RecordedWalks]
@@ -29,7 +37,7 @@ recordings are large, and clients may be many and slow."""
 
 
 class _Block(NamedTuple):
-    """Consecutive frames of one lane: its number, of each its step and robot time, and numbers."""
+    """Consecutive frames of one lane: its number, of each its step and time, and numbers."""
 
     lane: int
     steps: NDArray[np.int32]
@@ -48,24 +56,27 @@ def column_names(robot: Robot, has_torque: bool) -> list[str]:
         *(f"{joint}_rad" for joint in joints),
         *(f"leg{leg}_foot_{axis}_m" for leg in range(1, len(legs) + 1) for axis in "xyz"),
         *(f"{joint}_torque_nm" for joint in joints if has_torque),
+        _CLOCK,
     ]
 
 
-def trajectory_csv(look: Look, lanes: Sequence[int]) -> Iterator[str]:
+def trajectory_csv(look: Look, lanes: Sequence[int], clock: Clock = DEFAULT_CLOCK) -> Iterator[str]:
     """Yield a CSV table in chunks. Numbers are the shortest that give the recorded ones again.
 
     Args:
         look: returns the recording.
         lanes: numbers of the lanes, counted from 0.
+        clock: times a race.
     """
     walks = look()
     robot, has_torque = walks.problem.built_robot, _has_torque(walks, lanes)
+    clock = walks.clock_of(clock)
     del walks
     yield ",".join(column_names(robot, has_torque)) + "\r\n"
-    for block in _blocks(look, lanes, has_torque):
+    for block in _blocks(look, lanes, clock, has_torque):
         index = zip(block.steps.tolist(), block.times_s.tolist(), block.numbers, strict=True)
         yield "".join(
-            f"{block.lane},{step},{time_s:.6g}," + ",".join(map(_cell, row)) + "\r\n"
+            f"{block.lane},{step},{time_s:.6g}," + ",".join(map(_cell, row)) + f",{clock}\r\n"
             for step, time_s, row in index
         )
 
@@ -74,12 +85,19 @@ def _cell(number: np.float32) -> str:
     return "" if np.isnan(number) else str(number)
 
 
-def trajectory_parquet(look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
+def trajectory_parquet(
+    look: Look,
+    lanes: Sequence[int],
+    clock: Clock = DEFAULT_CLOCK,
+    about: Mapping[str, str] = NO_METADATA,
+) -> Iterator[bytes]:
     """Yield a Parquet file in chunks; a row group has about 16,000 frames.
 
     Args:
         look: returns the recording.
         lanes: numbers of the lanes, counted from 0.
+        clock: times a race.
+        about: metadata of the schema; each column has its unit.
 
     Raises:
         MissingExtra: at the call, if PyArrow is not installed.
@@ -87,20 +105,34 @@ def trajectory_parquet(look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
     with needs("parquet", "a Parquet file"):
         import pyarrow as arrow  # noqa: PLC0415
         from pyarrow import parquet  # noqa: PLC0415
-    return _parquet(arrow, parquet, look, lanes)
+    return _parquet((arrow, parquet), look, lanes, clock, about)
 
 
-def _parquet(arrow: Any, parquet: Any, look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
+def _parquet(
+    modules: tuple[Any, Any],
+    look: Look,
+    lanes: Sequence[int],
+    clock: Clock,
+    about: Mapping[str, str],
+) -> Iterator[bytes]:
+    arrow, parquet = modules
     walks = look()
     robot, has_torque = walks.problem.built_robot, _has_torque(walks, lanes)
+    clock = walks.clock_of(clock)
     del walks
     types = [arrow.int16(), arrow.int32(), arrow.float64()]
     names = column_names(robot, has_torque)
-    types += [arrow.float32()] * (len(names) - len(types))
-    schema = arrow.schema(list(zip(names, types, strict=True)))
+    types += [arrow.float32()] * (len(names) - len(types) - 1)
+    of_clock = arrow.dictionary(arrow.int8(), arrow.string())
+    fields = [
+        arrow.field(name, kind, metadata=_metadata_of(name))
+        for name, kind in zip(names, [*types, of_clock], strict=True)
+    ]
+    schema = arrow.schema(fields, metadata=dict(about))
+    clock_name = arrow.array([clock], of_clock)
     buffer = DrainedBuffer()
     with parquet.ParquetWriter(arrow.PythonFile(buffer, mode="w"), schema) as writer:
-        for group in _groups(_blocks(look, lanes, has_torque)):
+        for group in _groups(_blocks(look, lanes, clock, has_torque)):
             numbers = np.concatenate([block.numbers for block in group])
             columns = [
                 np.concatenate(
@@ -114,9 +146,16 @@ def _parquet(arrow: Any, parquet: Any, look: Look, lanes: Sequence[int]) -> Iter
                 arrow.array(column, kind, from_pandas=True)  # NaN as null
                 for column, kind in zip(columns, types, strict=True)
             ]
+            arrays.append(clock_name.take(arrow.array(np.zeros(len(numbers), np.int8))))
             writer.write_table(arrow.Table.from_arrays(arrays, schema=schema))
             yield buffer.drain()
     yield buffer.drain()
+
+
+def _metadata_of(column: str) -> dict[str, str]:
+    units = (unit for ending, unit in _UNITS if column.endswith(ending))
+    unit = next(units, None)
+    return {} if unit is None else {"unit": unit}
 
 
 def _groups(blocks: Iterator[_Block]) -> Iterator[list[_Block]]:
@@ -136,11 +175,12 @@ def _has_torque(walks: RecordedWalks, lanes: Sequence[int]) -> bool:
     return any(lane.steps and lane.motion(0).torque_nm is not None for lane in recorded)
 
 
-def _blocks(look: Look, lanes: Sequence[int], has_torque: bool) -> Iterator[_Block]:
+def _blocks(look: Look, lanes: Sequence[int], clock: Clock, has_torque: bool) -> Iterator[_Block]:
     for number in lanes:
         walks = look()
         count, problem = len(walks.lanes[number].steps), walks.problem
-        encode = _Encoder(number, problem.built_robot, problem.robot.step_s, has_torque)
+        starts_s = walks.lanes[number].starts_s(problem.robot.step_s, clock)
+        encode = _Encoder(number, problem.built_robot, starts_s, has_torque)
         rest = walks.lanes[number].start_qpos
         del walks
         yield encode.rest(rest)
@@ -153,7 +193,8 @@ class _Encoder(NamedTuple):
 
     lane: int
     robot: Robot
-    step_s: float
+    starts_s: FloatArray
+    """Of each step the time at which its motion begins [s]."""
     has_torque: bool
 
     def rest(self, qpos: NDArray[np.float32]) -> _Block:
@@ -165,7 +206,7 @@ class _Encoder(NamedTuple):
         motions = [lane.motion(index) for index in range(first, end)]
         steps = [lane.steps[index].step for index in range(first, end)]
         counts = [len(motion.time_s) for motion in motions]
-        starts_s = np.repeat([(step - 1) * self.step_s for step in steps], counts)
+        starts_s = np.repeat(self.starts_s[first:end], counts)
         return self._block(
             np.repeat(steps, counts),
             (starts_s + np.concatenate([motion.time_s for motion in motions])).round(6),

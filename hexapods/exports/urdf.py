@@ -253,7 +253,8 @@ class _Writer:
             name: value if isinstance(value, str) else numbers([value])
             for name, value in exported_settings(self._robot).items()
         }
-        element = add(self._root, "hexapods", settings)
+        feet = [f"{self._prefix}{name}" for name in settings["feet"].split()]
+        element = add(self._root, "hexapods", {**settings, "feet": " ".join(feet)})
         home = home_angles_rad(self._robot).tolist()
         for joint, home_rad in zip(legs_of(self._robot).joints, home, strict=True):
             hinge = model.joint(joint.label).id

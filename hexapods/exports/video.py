@@ -7,7 +7,7 @@ environment has `MUJOCO_GL=osmesa`.
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -19,8 +19,8 @@ import numpy as np
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.types import FloatArray
-from hexapods.exports.export_format import IN_PROCESS, Execution
-from hexapods.exports.options import VideoOptions
+from hexapods.exports.export_format import IN_PROCESS, NO_METADATA, Execution
+from hexapods.exports.options import DEFAULT_CLOCK, VideoOptions
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
 from hexapods.extras import needs, no_opengl
 from hexapods.runs.clocks import Clock
@@ -43,12 +43,14 @@ class ShownPoses:
         agents: names of the agents of the lanes.
         times_s: race or practice time of each picture [s].
         poses: (pictures, lanes, 7 + joints): position [m], quaternion, angles [rad].
+        clock: by which the times are.
     """
 
     problem: WalkingProblem
     agents: tuple[str, ...]
     times_s: tuple[float, ...]
     poses: FloatArray
+    clock: Clock = DEFAULT_CLOCK
 
 
 def shown_poses(
@@ -63,11 +65,16 @@ def shown_poses(
     times_s = _times_s(tracks, options, max_frames)
     poses = np.array([[track.pose(time_s) for track in tracks] for time_s in times_s])
     agents = tuple(lane.agent for lane in walks.lanes)
-    return ShownPoses(walks.problem, agents, tuple(times_s), poses)
+    clock = walks.clock_of(options.clock)
+    return ShownPoses(walks.problem, agents, tuple(times_s), poses, clock)
 
 
 def render_video(
-    walks: RecordedWalks, options: VideoOptions, ending: str, execution: Execution = IN_PROCESS
+    walks: RecordedWalks,
+    options: VideoOptions,
+    ending: str,
+    execution: Execution = IN_PROCESS,
+    about: Mapping[str, str] = NO_METADATA,
 ) -> bytes:
     """Return the video of a run; raises as `shown_poses` and `write_video`.
 
@@ -76,13 +83,19 @@ def render_video(
         options: settings of the video.
         ending: `mp4` or `gif`.
         execution: maximum number of pictures, and where they are drawn.
+        about: what the metadata of an MP4 say.
     """
     shown = shown_poses(walks, options, execution.max_frames or MAX_FRAMES)
-    return execution.write_file(partial(write_video, shown, options), f"video.{ending}")
+    write = partial(write_video, shown, options, about=dict(about))
+    return execution.write_file(write, f"video.{ending}")
 
 
-def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
+def write_video(
+    shown: ShownPoses, options: VideoOptions, file: Path, about: Mapping[str, str] = NO_METADATA
+) -> None:
     """Render the video of a run to a file, as its ending says.
+
+    The caption tells the clock, and so do the metadata of an MP4.
 
     Raises:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
@@ -91,7 +104,7 @@ def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
     pictures = _drawing().pictures
     with needs("video", "a video"):
         import imageio_ffmpeg as ffmpeg  # noqa: PLC0415
-    size, coding = (options.width, options.height), _coding(options.fps, file.suffix)
+    size, coding = (options.width, options.height), _coding(options.fps, file.suffix, about)
     writer = ffmpeg.write_frames(str(file), size, **coding)
     writer.send(None)
     try:
@@ -127,14 +140,14 @@ def _drawing() -> ModuleType:
     return video_pictures
 
 
-def _coding(fps: int, ending: str) -> dict[str, Any]:
+def _coding(fps: int, ending: str, about: Mapping[str, str]) -> dict[str, Any]:
     common = {"fps": fps, "macro_block_size": 2, "ffmpeg_log_level": "error"}
     if ending == ".mp4":
         return {
             **common,
             "codec": "libx264",
             "quality": 8,
-            "output_params": ["-movflags", "+faststart"],
+            "output_params": ["-movflags", "+faststart", *_metadata(about)],
         }
     palette = "split[a][b];[a]palettegen[p];[b][p]paletteuse"
     return {
@@ -143,6 +156,14 @@ def _coding(fps: int, ending: str) -> dict[str, Any]:
         "pix_fmt_out": "pal8",
         "output_params": ["-filter_complex", palette],
     }
+
+
+def _metadata(about: Mapping[str, str]) -> list[str]:
+    """Return options of ffmpeg: MP4 has a title and a comment."""
+    if not about:
+        return []
+    comment = "; ".join(f"{name}: {text}" for name, text in about.items())
+    return ["-metadata", f"title={about.get('title', '')}", "-metadata", f"comment={comment}"]
 
 
 def _times_s(tracks: Sequence["_Track"], options: VideoOptions, max_frames: int) -> list[float]:

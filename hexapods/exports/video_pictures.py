@@ -16,7 +16,7 @@ from hexapods.exports.options import VideoOptions
 from hexapods.exports.video import ShownPoses
 from hexapods.extras import needs, no_opengl
 from hexapods.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
-from hexapods.runs.clocks import FINISH_LINE_M
+from hexapods.runs.clocks import CLOCK_TITLES, FINISH_LINE_M
 from hexapods.runs.config import WalkingProblem
 
 _GAP_M = 0.25
@@ -29,7 +29,7 @@ def pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.ui
     """Yield the pictures, (height, width, 3)."""
     scene = _Scene(shown, options)
     followed = 0.0
-    caption = _Caption(shown.agents, options.height)
+    caption = _Caption(shown.agents, options.height, CLOCK_TITLES[shown.clock])
     context = gl_context(options.width, options.height)
     try:
         painter = scene.painter()
@@ -211,7 +211,8 @@ def _model(shown: ShownPoses, width_m: float, options: VideoOptions) -> mujoco.M
 class _Caption:
     """Time, names and distances over the picture."""
 
-    def __init__(self, agents: Sequence[str], height: int) -> None:
+    def __init__(self, agents: Sequence[str], height: int, clock: str) -> None:
+        self._clock = clock
         self._titles, self._colors = [title_of(agent) for agent in agents], colors_of(agents)
         self._size = max(11, height // 26)
         self._font = ImageFont.load_default(self._size)
@@ -222,7 +223,7 @@ class _Caption:
         """Return the picture with its caption."""
         image = Image.fromarray(np.ascontiguousarray(picture))
         draw = ImageDraw.Draw(image, "RGBA")
-        lines = [(f"{time_s:.1f} s", _CAPTION)] + [
+        lines = [(f"{time_s:.1f} s, {self._clock}", _CAPTION)] + [
             (f"{title}  {distance:.2f} m", color)
             for title, color, distance in zip(self._titles, self._colors, distances_m, strict=True)
         ]

@@ -19,6 +19,13 @@ CLOCK_TITLES: Mapping[Clock, str] = {
     "wall": "real clock",
     "free": "no clock",
 }
+CLOCK_SENTENCES: Mapping[Clock, str] = {
+    "paper": "Times by the paper clock: a decision takes a fixed share of a motion for each "
+    "transition that was simulated.",
+    "wall": "Times by the real clock: decisions take as long as was measured.",
+    "free": "Times of the motion alone, without decisions.",
+}
+"""What times in a file are."""
 CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 PAPER_MOTIONS_PER_TRANSITION = 0.03

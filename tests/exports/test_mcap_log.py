@@ -1,7 +1,9 @@
 """The MCAP log of a recorded walk, opened by the reader of the format's authors."""
 
 import io
+import json
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from hexapods.domain.posture import rotation_matrices
 from hexapods.exports.export_format import Execution
 from hexapods.exports.mcap_log import mcap_log
 from hexapods.exports.recorded_walks import RecordedWalks
+from tests.imports.robots import read
 
 Messages = dict[str, list[Any]]
 
@@ -30,7 +33,8 @@ def messages(data: bytes) -> Messages:
     """Return the decoded messages by topic, in order of time."""
     reader = make_reader(io.BytesIO(data), decoder_factories=[DecoderFactory()])
     by_topic: Messages = {}
-    for _, channel, _, message in reader.iter_decoded_messages():
+    topics = ["/lane0/joint_states", "/lane1/joint_states", "/tf"]
+    for _, channel, _, message in reader.iter_decoded_messages(topics):
         by_topic.setdefault(channel.topic, []).append(message)
     return by_topic
 
@@ -52,9 +56,50 @@ def test_schemas_are_those_that_foxglove_knows(data: bytes) -> None:
         "/lane0/joint_states": "foxglove.JointStates",
         "/lane1/joint_states": "foxglove.JointStates",
         "/tf": "foxglove.FrameTransforms",
+        "/robot_description": "std_msgs/String",
+        "/lane1/robot_description": "std_msgs/String",
     }
-    (agents,) = reader.iter_metadata()
-    assert agents.metadata == {"lane0": "Greedy", "lane1": "Wave"}
+    metadata = {entry.name: entry.metadata for entry in reader.iter_metadata()}
+    assert metadata["agents"] == {"lane0": "Greedy", "lane1": "Wave"}
+    assert metadata["run"]["clock"] == "paper"
+    assert metadata["run"]["time"].startswith("Times by the paper clock")
+
+
+def test_the_robot_is_described_as_urdf_with_the_frames_of_its_lane(
+    raced: RecordedWalks, data: bytes, messages: Messages
+) -> None:
+    reader = make_reader(io.BytesIO(data))
+    topics = ["/robot_description", "/lane1/robot_description"]
+    described = {
+        channel.topic: (message.log_time, json.loads(message.data)["data"])
+        for _, channel, message in reader.iter_messages(topics)
+    }
+    frames = {t.child_frame_id for message in messages["/tf"] for t in message.transforms}
+    joints = [joint.name for joint in messages["/lane0/joint_states"][0].joints]
+    for lane, topic in enumerate(topics):
+        time, text = described[topic]
+        root = ElementTree.fromstring(text)
+        assert time == 0
+        assert {link.get("name") for link in root.iter("link")} <= frames
+        assert root[1].get("name") == f"lane{lane}/torso"
+        turning = [joint for joint in root.findall("joint") if joint.get("type") == "revolute"]
+        assert [joint.get("name") for joint in turning] == joints
+        imported = read(text, "robot.urdf")
+        assert len(imported.legs) == len(raced.problem.robot.legs)
+        assert imported.numbers["swing_s"] == raced.problem.robot.swing_s
+
+
+def test_a_log_is_in_robot_time_by_default(raced: RecordedWalks) -> None:
+    reader = make_reader(io.BytesIO(b"".join(mcap_log(raced))))
+    summary = reader.get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    last_s = summary.statistics.message_end_time / 1e9
+    ends = [lane.ends_s(raced.problem.robot.step_s, "free")[-1] for lane in raced.lanes]
+    assert last_s == pytest.approx(max(ends))
+    assert {entry.name: entry.metadata for entry in reader.iter_metadata()}["run"][
+        "clock"
+    ] == "free"
 
 
 def test_a_server_that_stops_writes_no_log(raced: RecordedWalks) -> None:

@@ -51,7 +51,7 @@ def test_frames_of_the_page_are_the_joint_positions_that_were_simulated(parts: S
     mesh = RobotMesh(replay.show.spec.robot)
 
     assert about["level"] == 0
-    assert about["notes"] == []
+    assert about["notes"] == ["Times: paper clock."]
     end_s = about["recorded_s"][-1][1]
     numbers = range(int(end_s * FRAMES_PER_S / SEGMENT_FRAMES) + 1)
     assert list(blocks) == ["replay", "scene", *(f"segment-{number}" for number in numbers)]

@@ -26,8 +26,11 @@ PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end
 
 
 def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
-    with av.open(io.BytesIO(render_video(raced, SMALL, "mp4")), "r") as video:
+    about = {"title": "A race", "clock": "free"}
+    with av.open(io.BytesIO(render_video(raced, SMALL, "mp4", about=about)), "r") as video:
         stream = video.streams.video[0]
+        assert video.metadata["title"] == "A race"
+        assert "clock: free" in video.metadata["comment"]
         pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in video.decode(stream)]
 
     assert (stream.codec_context.name, stream.width, stream.height) == ("h264", 160, 120)

@@ -25,6 +25,7 @@ def source_of(run: AnyRun, recordings: Recordings, encode: EncodeReplay) -> Expo
     """
     recorded_walks(run, recordings)
     return ExportSource(
+        run.id,
         run.name or f"{run.kind} {run.id}",
         lambda: recorded_walks(run, recordings),
         lambda clock: encode(run.id, clock),

@@ -62,6 +62,8 @@ class Player extends EventTarget {
   get duration_s() { return end_s; }
   get paused() { return !this.#isPlaying; }
   get speed() { return this.#speed; }
+  /** By which the run is timed: "free", the motion alone, "paper" or "wall". */
+  get clock() { return replay.clock ?? "free"; }
 
   /** Go on; from the start if it has ended. */
   play() {
@@ -193,8 +195,8 @@ Object.assign(window, { hexapods: player });
 
 const isEmbedded = parent !== window;
 const tellParent = (/** @type {string} */ type) => {
-  const { time_s, duration_s, paused, speed } = player;
-  if (isEmbedded) parent.postMessage({ type, time_s, duration_s, paused, speed }, "*");
+  const { time_s, duration_s, paused, speed, clock } = player;
+  if (isEmbedded) parent.postMessage({ type, time_s, duration_s, paused, speed, clock }, "*");
 };
 
 addEventListener("message", ({ source, data }) => {
