@@ -7,6 +7,7 @@ the ground (McGhee and Frank 1968, "On the stability properties of quadruped cre
 import math
 from collections.abc import Iterable, Sequence
 from itertools import combinations, pairwise, product
+from typing import Self
 
 from hexapods.domain.gait import Gait, Group
 from hexapods.domain.kinematics import legs_of
@@ -87,6 +88,13 @@ class Support:
             share = kg / total / 2
             center_x, center_y = self.center_m
             self.center_m = center_x + share * (mount_x + x), center_y + share * (mount_y + y)
+
+    @classmethod
+    def of_points(cls, homes_m: Sequence[Point], center_m: Point) -> Self:
+        """Return the support polygons of feet in some places under a centre of mass."""
+        support = cls.__new__(cls)
+        support.homes_m, support.center_m = list(homes_m), center_m
+        return support
 
     def margin_m(self, swinging: Iterable[int] = ()) -> float:
         """Return the margin while some legs swing, counted from 1; of all feet by default [m]."""

@@ -16,7 +16,7 @@ child `reading` goes through the steps:
   the names of `sides`, and numbers the legs; `stance` finds how it stands, by the kinematics of
   `chain` and `reach`, `heights` how high it could; `joint_kinds` names the joints; `masses` and
   `servos` fill in what is missing; `shapes` finds what touches the ground, from `surfaces`;
-  `drawing` what is drawn.
+  `drawing` what is drawn; `balance` tells what topples.
 - `exported_settings` and `exported_pose` read what a file that was exported here says of its robot.
 - `building` makes a `RobotModel` of all, within `link_limits`, `sketch` a picture of the bodies in
   the file, for a person who corrects what was guessed. `choices` are decisions of a person,

@@ -16,6 +16,7 @@ from hexapods.domain.robot_model import (
 )
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
+from hexapods.imports.balance import tell_of_balance
 from hexapods.imports.chain import LegChain
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
@@ -168,6 +169,7 @@ class _Builder:
         meshes = find_meshes(self._posed, origins, self._notes)
         model = self._model(links, masses, servos, meshes, home)
         gait = find_gait(self._posed.mounts()[:, :2], self._choices, self._notes)
+        tell_of_balance(model, gait, self._notes)
         return ImportedRobot(
             model=model,
             name=self._origin.name,
