@@ -12,11 +12,12 @@ child `reading` goes through the steps:
   and simplify meshes (`stl`, `obj`, `collada`, `gltf`).
 - `compiling` has MuJoCo turn it into numbers, in the `units` of the file and without
   `incomplete_shapes`; `posed_robot` is the robot with all joints at 0.
-- `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward, by
-  the names of `sides`, and numbers the legs; `stance` finds how it stands, by the kinematics of
-  `chain` and `reach`, `heights` how high it could; `joint_kinds` names the joints; `masses` and
-  `servos` fill in what is missing; `shapes` finds what touches the ground, from `surfaces`;
-  `drawing` what is drawn; `balance` tells what topples.
+- `upright` tells which axis is up; `skeleton` finds the torso and the legs, `feet` their feet, and
+  `closed_loops` those to which two chains lead; `directions` tells forward, by the names of
+  `sides`, and numbers the legs; `stance` finds how the robot stands, by the kinematics of `chain`
+  and `reach`, `heights` how high it could; `joint_kinds` names the joints; `masses` and `servos`
+  fill in what is missing; `shapes` finds what touches the ground, from `surfaces`; `drawing` what
+  is drawn; `size` and `balance` tell what does not fit and what topples.
 - `exported_settings` and `exported_pose` read what a file that was exported here says of its robot.
 - `building` makes a `RobotModel` of all, within `link_limits`, `sketch` a picture of the bodies in
   the file, for a person who corrects what was guessed. `choices` are decisions of a person,

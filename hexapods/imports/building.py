@@ -1,11 +1,10 @@
 """Build a `RobotModel` from a compiled file: find its parts, and assemble them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hexapods.domain.errors import InvalidInput
 from hexapods.domain.robot_model import (
     ModelFoot,
     ModelGeom,
@@ -23,14 +22,14 @@ from hexapods.imports.compiling import Compiled
 from hexapods.imports.directions import find_forward, find_gait, numbered
 from hexapods.imports.drawing import find_meshes
 from hexapods.imports.exported_pose import FOREIGN, ExportedPose
+from hexapods.imports.feet import FoundLeg
 from hexapods.imports.heights import body_height_m
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.joint_kinds import joint_kinds
 from hexapods.imports.link_limits import checked_model
-from hexapods.imports.masses import Mass, find_masses, mass_of
+from hexapods.imports.masses import Mass, find_masses, mass_in_file_kg, mass_of
 from hexapods.imports.notes import Notes, quoted
 from hexapods.imports.posed_robot import PosedRobot, initial_pose, keyframes_of
-from hexapods.imports.reach import can_step
 from hexapods.imports.servos import (
     FoundServo,
     angle_limits,
@@ -39,18 +38,19 @@ from hexapods.imports.servos import (
     limits_around,
 )
 from hexapods.imports.shapes import GroundShape, drop_touching, link_shapes, torso_shapes
-from hexapods.imports.skeleton import FoundLeg, find_skeleton
+from hexapods.imports.size import check_legs, check_mass, tell_of_size
 from hexapods.imports.stance import (
     Angles,
     RobotWithLegs,
     find_stance,
-    reaches_grid,
+    tell_of_reach,
 )
-from hexapods.imports.units import apply_choices
+from hexapods.imports.units import read_limits
+from hexapods.imports.upright import find_upright
 
 _UNLIMITED = (-np.pi, np.pi)
-_LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
-_LEAST_FOOT_M, _MOST_FOOT_M = 0.001, 2.0
+_GIVEN_SHARE = 0.5
+"""Share of its mass that the file gives at least if its size is compared with its mass."""
 _SAME_PLACE_M = 1e-3
 
 
@@ -88,12 +88,12 @@ def build(
     Raises:
         InvalidInput: if the file is no robot with legs, or a choice is not possible.
     """
-    apply_choices(compiled.model, choices)
-    pose = initial_pose(compiled.model)
-    skeleton = find_skeleton(compiled, pose, choices, notes)
-    posed = PosedRobot(compiled, skeleton, pose, keeps_frame=exported.keeps_frame)
+    read_limits(compiled.joint_name, compiled.model, choices, notes)
+    skeleton, up = find_upright(compiled, choices, notes)
+    posed = PosedRobot(
+        compiled, skeleton, initial_pose(compiled.model), keeps_frame=exported.keeps_frame
+    )
     names = [_names_of(compiled, leg) for leg in posed.legs]
-    up = choices.up or "z"
     posed.turn(find_forward(posed.mounts()[:, :2], names, up, choices, notes))
     posed.order(range(len(posed.legs)) if exported.keeps_frame else numbered(_places(posed)))
     keyframes = {**keyframes_of(compiled.model), **exported.keyframes(compiled.model)}
@@ -144,11 +144,11 @@ class _Builder:
         self._torso = torso_shapes(posed, self._span())
 
     def build(self) -> ImportedRobot:
-        self._check_size()
+        check_legs(self._chains, [leg.foot for leg in self._posed.legs])
         robot = self._robot_with_legs()
         home, heights = find_stance(robot, self._choices, self._notes)
-        reaches = reaches_grid(robot, home)
-        self._tell_of_reach(home, reaches=reaches)
+        reaches = tell_of_reach(robot, home, self._notes)
+        self._tell_of_limits()
         links: dict[int | None, str] = {None: self._name_of_torso()}
         links |= {joint: self._name_of_link(joint) for joint in self._joints}
         masses = find_masses(
@@ -160,8 +160,12 @@ class _Builder:
             are_whole=self._exported.keeps_frame,
         )
         mass_kg = ordered_sum(mass.kg for mass in masses.values())
-        if not 0.001 <= mass_kg <= 10_000:
-            raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
+        height_m = body_height_m(self._chains, home)
+        if self._choices.mass_kg is None:
+            given_kg = mass_in_file_kg(self._posed)
+            if given_kg > _GIVEN_SHARE * mass_kg:
+                tell_of_size(given_kg, robot.length_m, height_m, self._notes)
+        check_mass(mass_kg)
         guess_nm = guessed_torque(mass_kg, robot.length_m, len(self._chains))
         servos = find_servos(self._compiled, self._joints, guess_nm, self._choices, self._notes)
         origins: dict[int | None, FloatArray] = {None: np.zeros(3)}
@@ -186,7 +190,7 @@ class _Builder:
             gait=gait,
             forward_deg=self._posed.turn_deg,
             mass_kg=mass_kg,
-            body_height_m=body_height_m(self._chains, home),
+            body_height_m=height_m,
             body_heights_m=heights and (heights.lowest, heights.highest),
             reaches_grid=reaches,
             notes=self._notes.collected(),
@@ -200,24 +204,6 @@ class _Builder:
             self._posed.foot(leg),
             np.array(limits).T,
         )
-
-    def _check_size(self) -> None:
-        for number, chain in enumerate(self._chains, start=1):
-            if not _LEAST_LEG_M <= chain.length_m <= _MOST_LEG_M:
-                raise InvalidInput(
-                    f"leg {number} (to {quoted(self._posed.legs[number - 1].foot.name)}) is "
-                    f"{chain.length_m:.3g} m long; a leg has from {_LEAST_LEG_M:g} to "
-                    f"{_MOST_LEG_M:g} m: `scale` reads the file in another unit of length, 0.001 "
-                    "in millimetres"
-                )
-
-        for leg in self._posed.legs:
-            if not _LEAST_FOOT_M <= leg.foot.radius_m <= _MOST_FOOT_M:
-                raise InvalidInput(
-                    f"the foot {quoted(leg.foot.name)} has a radius of {leg.foot.radius_m:.3g} m; "
-                    f"a foot has from {_LEAST_FOOT_M:g} to {_MOST_FOOT_M:g} m: `scale` reads the "
-                    "file in another unit of length"
-                )
 
     def _span(self) -> FloatArray:
         """Return half sides of a box within the mounts."""
@@ -249,40 +235,17 @@ class _Builder:
             angles(model.qpos0),
         )
 
-    def _tell_of_reach(self, home: Angles, *, reaches: bool) -> None:
-        short = [n for n, chain in enumerate(self._chains, start=1) if len(chain.axes) < 3]
-        if short:
-            self._notes.guess(
-                "legs",
-                "a leg of two joints follows a grid only as far as it can: "
-                f"{', '.join(map(str, short))}",
-                self._joint_names(short),
-            )
-        stuck = [leg for leg in short if not can_step(self._chains[leg - 1], home[leg - 1])]
-        if stuck:
-            self._notes.guess(
-                "stance",
-                "it cannot walk: from home a foot cannot both rise and move along the ground, that "
-                f"of leg {', '.join(map(str, stuck))}; choose other angles with which it stands",
-                self._joint_names(stuck),
-            )
-        elif not reaches:
-            self._notes.guess(
-                "stance", "at home not every foot reaches to all sides: take a small grid"
-            )
+    def _tell_of_limits(self) -> None:
         unlimited = [joint for joint in self._joints if self._limits[joint] is None]
         if unlimited:
             which = (
                 "all joints" if len(unlimited) == len(self._joints) else f"{len(unlimited)} joints"
             )
             self._notes.guess(
-                "joints", f"{which} have no limits in the file: 90° to each side of home"
+                "joints",
+                f"{which} have no limits in the file: 90° to each side of home",
+                map(self._compiled.joint_name, unlimited),
             )
-
-    def _joint_names(self, legs: Iterable[int]) -> list[str]:
-        """Return the names of the joints of some legs, counted from 1."""
-        joints = [joint for leg in legs for joint in self._posed.legs[leg - 1].joints]
-        return [self._compiled.joint_name(joint) for joint in joints]
 
     def _ends(self) -> dict[int | None, FloatArray]:
         """Return the two end points of each link in the body frame, (2, 3) [m], by joint."""

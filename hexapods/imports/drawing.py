@@ -57,7 +57,7 @@ def find_meshes(
 
 
 def _drawn(posed: PosedRobot, joint: int | None) -> list[int]:
-    bodies = posed.bodies_of(joint)
+    bodies = [body for body in posed.bodies_of(joint) if body not in posed.skeleton.hidden]
     return [geom for body in bodies for geom in drawn_geoms(posed.compiled, body)]
 
 

@@ -42,6 +42,19 @@ class Foot:
         return centre
 
 
+@dataclass(frozen=True)
+class FoundLeg:
+    """A leg.
+
+    Attributes:
+        joints: ids of its hinges, from the torso to the foot.
+        foot: its foot.
+    """
+
+    joints: tuple[int, ...]
+    foot: Foot
+
+
 def find_foot(
     compiled: Compiled,
     data: mujoco.MjData,

@@ -18,6 +18,8 @@ _DENSITY = 500.0
 _NO_MASS_KG = 1e-5
 _PLACEHOLDER_KG, _PLACEHOLDER_SHARE = 0.01, 0.02
 """Placeholders weigh less, and less than this share of what their shapes would."""
+_REAL_KG, _UNLIKELY_RATIO = 0.02, 10.0
+"""Placeholders are not worth so much more than other links that weigh more than this."""
 _ROD_WIDTH = 0.1
 """Width of a rod of a link without shapes, as a share of its length."""
 _SAME = 1e-3
@@ -39,6 +41,13 @@ class Mass:
     kg: float
     center_m: FloatArray
     inertia: FloatArray
+
+
+def mass_in_file_kg(posed: PosedRobot) -> float:
+    """Return the mass that the file gives the robot, without what is guessed."""
+    return ordered_sum(
+        float(posed.compiled.model.body_mass[body]) for body in posed.skeleton.bodies
+    )
 
 
 def find_masses(
@@ -77,6 +86,11 @@ def find_masses(
         for joint, mass in by_shapes.items()
     }
     placeholders = _placeholders({joint: masses[joint].kg for joint in by_shapes}, expected_kg)
+    other_kg = ordered_sum(masses[joint].kg for joint in weighed if joint not in placeholders)
+    missing_kg = ordered_sum(expected_kg[joint] for joint in placeholders)
+    if other_kg > _REAL_KG and missing_kg > _UNLIKELY_RATIO * other_kg:
+        # All is light for its size: the lengths are in another unit.
+        placeholders = []
     unknown = [
         joint for joint in weighed if masses[joint].kg < _NO_MASS_KG or joint in placeholders
     ]

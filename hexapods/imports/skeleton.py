@@ -5,7 +5,7 @@ and those of no leg, such as an arm's, are locked.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -17,12 +17,14 @@ from hexapods.domain.robot_model import MAX_JOINTS, MIN_JOINTS
 from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
 from hexapods.imports.choices import Choices
+from hexapods.imports.closed_loops import second_chains
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.feet import Foot, chosen_foot, find_foot
+from hexapods.imports.feet import FoundLeg, chosen_foot, find_foot
 from hexapods.imports.notes import Notes, listed, quoted
 
 _NO_LEG = re.compile(
-    r"\b(arm|gripper|fingers?|head|neck|tail|wrist|camera|lidar|hand|jaw|antenna|ear)\b"
+    r"\b(arm|gripper|fingers?|head|neck|tail|wrist|camera|lidar|hand|jaw|antenna|ear|wings?"
+    r"|abdomen|haltere|proboscis|rostrum)\b"
 )
 """Words in names of what is no leg."""
 _WHEEL = re.compile(r"wheel", re.IGNORECASE)
@@ -36,19 +38,6 @@ _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 
 
 @dataclass(frozen=True)
-class FoundLeg:
-    """A leg.
-
-    Attributes:
-        joints: ids of its hinges, from the torso to the foot.
-        foot: its foot.
-    """
-
-    joints: tuple[int, ...]
-    foot: Foot
-
-
-@dataclass(frozen=True)
 class Skeleton:
     """The torso and the legs of a model.
 
@@ -58,6 +47,7 @@ class Skeleton:
         legs: in no order.
         locked: ids of hinges, slides and balls that do not move.
         feet: names of what could be feet.
+        hidden: ids of bodies that are not drawn, since they would stand still.
     """
 
     root: int
@@ -65,6 +55,7 @@ class Skeleton:
     legs: tuple[FoundLeg, ...]
     locked: tuple[int, ...]
     feet: tuple[str, ...]
+    hidden: frozenset[int]
 
 
 def find_skeleton(compiled: Compiled, pose: FloatArray, choices: Choices, notes: Notes) -> Skeleton:
@@ -96,6 +87,8 @@ class _Finder:
         for joint, body in enumerate(self._model.jnt_bodyid.tolist()):
             joints_of.setdefault(body, []).append(joint)
         self._joints_of: Mapping[int, Sequence[int]] = joints_of
+        self._second_joints: frozenset[int] = frozenset()
+        """Joints of chains of closed loops, each of which ends at the foot of a leg."""
 
     def find(self) -> Skeleton:
         root = self._root()
@@ -120,7 +113,8 @@ class _Finder:
         )
         self._tell_of_locked(locked, wheels)
         feet = self._possible_feet(ends, hinges, wheels)
-        return Skeleton(root, bodies, tuple(legs), locked, feet)
+        hidden = self._below_joints(self._second_joints, bodies)
+        return Skeleton(root, bodies, tuple(legs), locked, feet, hidden)
 
     def _root(self) -> int:
         """Return the child of the world whose descendants have the most hinges."""
@@ -224,6 +218,7 @@ class _Finder:
         if legs:
             lowest, longest = self._bottom(legs[0]), max(map(self._length, legs))
             legs = [leg for leg in legs if self._bottom(leg) <= lowest + _SAME_HEIGHT * longest]
+        legs = self._without_second_chains(legs)
         if not MIN_LEGS <= len(legs) <= MAX_LEGS:
             seen = [quoted(leg.foot.name) for leg in legs]
             raise InvalidInput(
@@ -237,6 +232,32 @@ class _Finder:
             "legs", f"its {len(legs)} legs are the chains that reach lowest, to: {names}"
         )
         return legs
+
+    def _without_second_chains(self, legs: list[FoundLeg]) -> list[FoundLeg]:
+        """Leave out of each closed loop the second chain to its foot."""
+        second = second_chains(legs, self._data)
+        if second:
+            names = [leg.foot.name for leg in second]
+            self._notes.guess(
+                "legs",
+                "two chains end at each foot, closed loops that the file leaves open: they are one "
+                f"leg, and the chains to {listed(sorted(names))} are not simulated, but what they "
+                "weigh is at the torso",
+                names,
+                Choices(feet=tuple(leg.foot.name for leg in legs)),
+            )
+            self._second_joints = frozenset(joint for leg in second for joint in leg.joints)
+        return [leg for leg in legs if leg not in second]
+
+    def _below_joints(self, joints: Collection[int], bodies: Sequence[int]) -> frozenset[int]:
+        """Return the bodies that some joints move."""
+        moved: set[int] = set()
+        for body in bodies:  # parents come first
+            if self._parent[body] in moved or any(
+                joint in joints for joint in self._joints_of.get(body, ())
+            ):
+                moved.add(body)
+        return frozenset(moved)
 
     def _is_no_leg(self, leg: FoundLeg) -> bool:
         bodies = [int(self._model.jnt_bodyid[joint]) for joint in leg.joints]
@@ -317,7 +338,10 @@ class _Finder:
     def _tell_of_locked(self, locked: Sequence[int], wheels: set[int]) -> None:
         for which, what in (
             ([joint for joint in locked if joint in wheels], "wheels, which were locked"),
-            ([joint for joint in locked if joint not in wheels], "joints of no leg, which hold"),
+            (
+                [joint for joint in locked if joint not in {*wheels, *self._second_joints}],
+                "joints of no leg, which hold",
+            ),
         ):
             if which:
                 names = listed(self._compiled.joint_name(joint) for joint in which)

@@ -105,11 +105,39 @@ def find_stance(robot: RobotWithLegs, choices: Choices, notes: Notes) -> Stance:
     return Stance(angles, heights)
 
 
-def reaches_grid(robot: RobotWithLegs, angles: Angles) -> bool:
-    """Whether each foot reaches its box from a stance."""
-    return not any(
-        is_short_of_box(chain, leg_angles) for chain, leg_angles in _pairs(robot, angles)
-    )
+def tell_of_reach(robot: RobotWithLegs, angles: Angles, notes: Notes) -> bool:
+    """Return whether each foot reaches its box from a stance, and tell of those that do not."""
+    short = [leg for leg, chain in enumerate(robot.chains) if len(chain.axes) < FOLLOWING_JOINTS]
+    if short:
+        notes.guess(
+            "legs",
+            f"a leg of two joints follows a grid only as far as it can: {_numbered(short)}",
+            [name for leg in short for name in robot.names[leg]],
+        )
+    unreached = [
+        leg
+        for leg, (chain, leg_angles) in enumerate(_pairs(robot, angles))
+        if is_short_of_box(chain, leg_angles)
+    ]
+    stuck = [leg for leg in unreached if leg in short]
+    if stuck:
+        notes.guess(
+            "stance",
+            "it cannot walk: from home a foot cannot both rise and move along the ground, that of "
+            f"leg {_numbered(stuck)}; choose other angles with which it stands",
+            [name for leg in stuck for name in robot.names[leg]],
+        )
+    elif unreached:
+        notes.guess(
+            "stance",
+            "at home not every foot reaches to all sides: take a small grid",
+            [name for leg in unreached for name in robot.names[leg]],
+        )
+    return not unreached
+
+
+def _numbered(legs: Sequence[int]) -> str:
+    return ", ".join(str(leg + 1) for leg in legs)
 
 
 def _pairs(robot: RobotWithLegs, angles: Angles) -> list[tuple[LegChain, FloatArray]]:

@@ -1,15 +1,15 @@
 """Units and axes of a file where they are not metres, radians, and z up."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import get_args
 
 import mujoco
 import numpy as np
 
-from hexapods.domain.robot_model import MAX_SIZE_M
+from hexapods.domain.robot_model import MAX_ANGLE_RAD, MAX_SIZE_M
 from hexapods.domain.types import FloatArray
 from hexapods.imports.choices import Axis, Choices
-from hexapods.imports.notes import Notes
+from hexapods.imports.notes import Notes, quoted
 
 _UP: dict[Axis, FloatArray] = {
     "z": np.eye(3),
@@ -26,6 +26,8 @@ _DIRECTIONS: dict[Axis, FloatArray] = {
 }
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+_MOST_SHARE, _LEAST_DEG = 0.75, 20.0
+"""Limits are in degrees if so many are beyond a turn in radians, the largest more than this."""
 
 
 def horizontal_axes(up: Axis | None) -> dict[Axis, float]:
@@ -135,15 +137,41 @@ def turn_upright(model: mujoco.MjModel, up: Axis, before: Axis = "z") -> None:
         turn_pose(model.qpos0[start : start + 3], model.qpos0[start + 3 : start + 7])
 
 
-def apply_choices(model: mujoco.MjModel, choices: Choices) -> None:
-    """Turn a model upright and read its limits in the unit that a person has chosen."""
-    if choices.up is not None:
-        turn_upright(model, choices.up)
-    if choices.angle_unit == "deg":
-        limits_in_degrees(model)
+def read_limits(
+    name_of: Callable[[int], str], model: mujoco.MjModel, choices: Choices, notes: Notes
+) -> None:
+    """Read the limits of hinges in degrees, if a person says so or they can be nothing else.
 
-
-def limits_in_degrees(model: mujoco.MjModel) -> None:
-    """Read the limits of hinges, which were taken for radians, in degrees."""
-    hinges = model.jnt_type == _HINGE
-    model.jnt_range[hinges] = np.radians(model.jnt_range[hinges])
+    Args:
+        name_of: returns the name of a joint.
+        model: the model, whose limits are changed.
+        choices: what a person decided.
+        notes: gets the guess.
+    """
+    hinges = np.flatnonzero((model.jnt_type == _HINGE) & (model.jnt_limited != 0))
+    widest = np.abs(model.jnt_range[hinges]).max(axis=1)
+    beyond = hinges[widest > MAX_ANGLE_RAD]
+    could_be = len(beyond) > 0 and _LEAST_DEG <= widest.max() <= 360
+    must_be = could_be and len(beyond) >= _MOST_SHARE * len(hinges)
+    is_chosen = choices.angle_unit is not None
+    joints = [name_of(joint) for joint in beyond.tolist()]
+    example = ""
+    if could_be:
+        low, high = model.jnt_range[beyond[0]]
+        example = f"such as {low:.4g} to {high:.4g} of {quoted(joints[0])}"
+    if choices.angle_unit == "deg" or (must_be and not is_chosen):
+        model.jnt_range[hinges] = np.radians(model.jnt_range[hinges])
+    if must_be and not is_chosen:
+        notes.guess(
+            "joints",
+            f"limits of joints are in degrees, {example}",
+            joints,
+            Choices(angle_unit="rad"),
+        )
+    elif could_be and not is_chosen:
+        notes.guess(
+            "joints",
+            f"limits of more than a turn are none, {example} rad: are all limits in degrees?",
+            joints,
+            Choices(angle_unit="deg"),
+        )

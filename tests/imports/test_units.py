@@ -1,4 +1,6 @@
+import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,9 +9,11 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.imports.child import read_robot_file
 from hexapods.imports.choices import Choices
 from hexapods.imports.imported import ImportedRobot
-from tests.imports.robots import FOUR, HOME, box_triangles, bug, dog, read, stl, zipped
+from hexapods.imports.notes import Note
+from tests.imports.robots import FOUR, HOME, SIX, box_triangles, bug, dog, read, stl, zipped
 
 MESH = '<visual><origin xyz="0.01 0 0"/><geometry><mesh filename="box.stl"/></geometry></visual>'
+BOX = stl(box_triangles((0.1, 0.04, 0.02)))
 
 
 def turned(robot: str, quaternion: str) -> str:
@@ -24,7 +28,7 @@ def offsets(robot: ImportedRobot) -> np.ndarray:
 
 @pytest.mark.parametrize("text", [dog(keyframes={"home": HOME}), bug(torso=MESH, femur=MESH)])
 def test_scale_multiplies_lengths_and_keeps_masses(text: str) -> None:
-    files = zipped({"robot.xml": text, "box.stl": stl(box_triangles((0.1, 0.04, 0.02)))})
+    files = zipped({"robot.xml": text, "box.stl": BOX})
     robot, scaled = read(files), read(files, choices=Choices(scale=0.5))
 
     assert offsets(scaled) == pytest.approx(0.5 * offsets(robot), abs=1e-12)
@@ -109,7 +113,116 @@ def test_a_scale_without_sense_is_refused(scale: float) -> None:
 
 
 def test_a_scale_that_makes_no_robot_says_so() -> None:
-    with pytest.raises(InvalidInput, match=r"leg 1 .* is 45 m long.*`scale` reads the file"):
+    with pytest.raises(InvalidInput, match=r"leg 1 .* is 45 m long.*`scale` reads the lengths"):
         read(dog(), choices=Choices(scale=100))
     with pytest.raises(InvalidInput, match=r"the foot tibia_.. has a radius of 0\.0008 m"):
         read(bug(), choices=Choices(scale=0.1))
+
+
+IN_DEGREES = '<limit lower="-90" upper="60" effort="{effort}" velocity="5"/>'
+
+
+def about(robot: ImportedRobot, words: str) -> Note:
+    """Return the only note that has some words."""
+    (note,) = [note for note in robot.notes if words in note.text]
+    return note
+
+
+def test_limits_that_can_only_be_in_degrees_are_read_so() -> None:
+    robot = read(bug(limit=IN_DEGREES))
+
+    assert robot.model.joints_of(1)[1].limits_rad == pytest.approx((-np.pi / 2, np.pi / 3))
+    note = about(robot, "limits of joints are in degrees, such as -90 to 60 of j_coxa_lf")
+    assert (len(note.parts), note.offer) == (18, Choices(angle_unit="rad"))
+    in_radians = read(bug(limit=IN_DEGREES), choices=Choices(angle_unit="rad"))
+    assert about(in_radians, "all joints have no limits in the file").parts
+
+
+@pytest.mark.parametrize(("limit", "is_asked"), [(90, True), (10, False), (1000, False)])
+def test_limits_that_may_be_in_degrees_are_asked_for(limit: int, is_asked: bool) -> None:
+    text = bug()
+    for leg in SIX:
+        text = re.sub(
+            rf'(name="j_coxa_{leg}.*?lower=)"[^"]*" upper="[^"]*"',
+            rf'\1"-{limit}" upper="{limit}"',
+            text,
+        )
+    robot = read(text)
+
+    assert robot.model.joints_of(1)[1].limits_rad == (-1.6, 1.6)
+    offers = [note.offer for note in robot.notes if "are all limits in degrees" in note.text]
+    assert offers == [Choices(angle_unit="deg")] * is_asked
+
+
+@pytest.mark.parametrize(
+    ("up", "quaternion"), [("y", "1 -1 0 0"), ("-y", "1 1 0 0"), ("-x", "1 0 -1 0")]
+)
+def test_the_axis_that_is_up_is_found_by_the_legs(up: str, quaternion: str) -> None:
+    text = turned(dog(keyframes={"home": HOME}), quaternion)
+    robot = read(text)
+
+    assert about(robot, f"{up} of the file is up: with z up it has no legs").topic == "base"
+    assert robot == replace(
+        read(text, choices=Choices(up=up)),  # type: ignore[arg-type]
+        notes=robot.notes,
+    )
+
+
+def test_legs_that_are_mounted_one_above_the_other_are_asked_for() -> None:
+    ring = {f"leg{n}": (0.1 * math.cos(t), 0.1 * math.sin(t)) for n, t in enumerate(np.arange(6))}
+    text = bug(ring).replace(
+        '<link name="base_link">',
+        '<link name="root"/><joint name="turn" '
+        'type="fixed"><parent link="root"/><child link="base_link"/><origin rpy="-1.5708 0 0"/>'
+        '</joint><link name="base_link">',
+    )
+    with pytest.raises(InvalidInput, match="or choose the axis that is up, such as y"):
+        read(text)
+
+    assert len(read(text, choices=Choices(up="y")).legs) == 6
+
+
+def test_a_two_legged_robot_is_not_asked_whether_it_lies() -> None:
+    with pytest.raises(InvalidInput) as refusal:
+        read(dog({"FL": (0.0, 0.1), "FR": (0.0, -0.1)}))
+
+    assert "up" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("scale", "offer"), [(10, Choices(scale=0.1)), (1, None), (0.1, Choices(scale=10))]
+)
+def test_a_robot_whose_size_does_not_fit_its_mass_is_offered_a_scale(
+    scale: float, offer: Choices | None
+) -> None:
+    robot = read(dog(keyframes={"home": HOME}), choices=Choices(scale=scale))
+
+    offers = {note.text: note.offer for note in robot.notes if note.topic == "size"}
+    texts = {
+        10: "it stands 3.1 m high and weighs 8.4 kg: read it at 1:10?",
+        0.1: "it stands 31 mm high and weighs 8.4 kg: read it at 10:1?",
+    }
+    assert offers == ({} if offer is None else {texts[scale]: offer})
+
+
+def test_a_robot_in_grams_is_offered_a_mass() -> None:
+    heavy = re.sub(r'mass="([^"]*)"', lambda mass: f'mass="{1000 * float(mass[1])}"', dog())
+    with pytest.raises(InvalidInput, match=r"body trunk weighs 5,000 kg.*choose `mass_kg`"):
+        read(heavy)
+
+
+def test_masses_by_density_of_a_large_robot_are_refused_with_a_scale() -> None:
+    dense = re.sub(r' mass="[^"]*"', ' density="1000"', dog(keyframes={"home": HOME}))
+    large = re.sub(
+        r' (size|pos|fromto)="([^"]*)"',
+        lambda found: (
+            f' {found[1]}="'
+            + " ".join(str(10 * float(number)) for number in found[2].split())
+            + '"'
+        ),
+        dense,
+    )
+
+    with pytest.raises(InvalidInput, match=r"body trunk weighs 6,\d{3} kg.* `scale` reads"):
+        read(large)
+    assert read(large, choices=Choices(scale=0.1)).mass_kg < 20
