@@ -14,7 +14,7 @@ import numpy as np
 from hexapods.domain.text import counted
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.notes import Notes, quoted
+from hexapods.imports.notes import Notes, listed, quoted
 
 _FULL_TORQUE_RAD = 0.05
 _KV_SHARE = 0.025
@@ -109,7 +109,7 @@ def find_servos(
             f"the armature of {counted(raised, 'joint')} was raised to {_ARMATURE_SHARE:g} of the "
             "torque limit: with less, stiff servos make standing feet creep",
         )
-    _tell_of_actuators(model, joints, notes)
+    _tell_of_actuators(compiled, joints, notes)
     return servos
 
 
@@ -210,13 +210,28 @@ def _is_motor(model: mujoco.MjModel, actuator: int) -> bool:
     return int(model.actuator_biastype[actuator]) == int(mujoco.mjtBias.mjBIAS_NONE)
 
 
-def _tell_of_actuators(model: mujoco.MjModel, joints: Sequence[int], notes: Notes) -> None:
-    actuators = [actuator for joint in joints for actuator in _actuators(model, joint)]
-    motors = [actuator for actuator in actuators if _is_motor(model, actuator)]
-    if not actuators:
+def _tell_of_actuators(compiled: Compiled, joints: Sequence[int], notes: Notes) -> None:
+    model = compiled.model
+    actuators = {joint: _actuators(model, joint) for joint in joints}
+    passive = [compiled.joint_name(joint) for joint in joints if not actuators[joint]]
+    motors = [
+        actuator
+        for of_joint in actuators.values()
+        for actuator in of_joint
+        if _is_motor(model, actuator)
+    ]
+    if len(passive) == len(joints):
         notes.repair("servos", "no joint had an actuator; each has a position servo now")
-    elif motors:
-        notes.repair("servos", f"{counted(len(motors), 'motor')} became position servos")
+        return
+    if passive:
+        notes.repair(
+            "servos",
+            f"these joints had no actuator, and have a position servo now: {listed(passive)}",
+            passive,
+        )
+    if motors:
+        servos = "a position servo" if len(motors) == 1 else "position servos"
+        notes.repair("servos", f"{counted(len(motors), 'motor')} became {servos}")
     else:
         notes.repair(
             "servos",

@@ -5,7 +5,7 @@ and those of no leg, such as an arm's, are locked.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -131,8 +131,10 @@ class _Finder:
             )
         other_roots = [body for body in roots if body != best]
         if other_roots:
-            names = listed(self._compiled.body_name(body) for body in other_roots)
-            self._notes.repair("links", f"left out what is not joined to the robot: {names}")
+            names = [self._compiled.body_name(body) for body in other_roots]
+            self._notes.repair(
+                "links", f"left out what is not joined to the robot: {listed(names)}", names
+            )
         return best
 
     def _below(self, root: int) -> Iterator[int]:
@@ -229,7 +231,9 @@ class _Finder:
             )
         names = listed(sorted(leg.foot.name for leg in legs))
         self._notes.guess(
-            "legs", f"its {len(legs)} legs are the chains that reach lowest, to: {names}"
+            "legs",
+            f"its {len(legs)} legs are the chains that reach lowest, to: {names}",
+            self._bodies_of_feet(legs),
         )
         return legs
 
@@ -243,11 +247,14 @@ class _Finder:
                 "two chains end at each foot, closed loops that the file leaves open: they are one "
                 f"leg, and the chains to {listed(sorted(names))} are not simulated, but what they "
                 "weigh is at the torso",
-                names,
+                self._bodies_of_feet(second),
                 Choices(feet=tuple(leg.foot.name for leg in legs)),
             )
             self._second_joints = frozenset(joint for leg in second for joint in leg.joints)
         return [leg for leg in legs if leg not in second]
+
+    def _bodies_of_feet(self, legs: Iterable[FoundLeg]) -> list[str]:
+        return [self._compiled.body_name(leg.foot.body) for leg in legs]
 
     def _below_joints(self, joints: Collection[int], bodies: Sequence[int]) -> frozenset[int]:
         """Return the bodies that some joints move."""
@@ -325,15 +332,11 @@ class _Finder:
     def _tell_of_base(self, root: int) -> None:
         joints = self._joints_of.get(root, ())
         kinds = [int(self._model.jnt_type[joint]) for joint in joints]
-        name = quoted(self._compiled.body_name(root))
+        name = self._compiled.body_name(root)
         if kinds == [int(mujoco.mjtJoint.mjJNT_FREE)]:
             return
-        if joints:
-            self._notes.repair(
-                "base", f"{name} moved by {counted(len(joints), 'joint')}; now it is free"
-            )
-        else:
-            self._notes.repair("base", f"{name} was fixed to the world; now it is free")
+        moved = f"moved by {counted(len(joints), 'joint')}" if joints else "was fixed to the world"
+        self._notes.repair("base", f"{quoted(name)} {moved}; now it is free", [name])
 
     def _tell_of_locked(self, locked: Sequence[int], wheels: set[int]) -> None:
         for which, what in (
@@ -344,8 +347,8 @@ class _Finder:
             ),
         ):
             if which:
-                names = listed(self._compiled.joint_name(joint) for joint in which)
-                self._notes.repair("joints", f"it has {what}: {names}")
+                names = [self._compiled.joint_name(joint) for joint in which]
+                self._notes.repair("joints", f"it has {what}: {listed(names)}", names)
 
 
 def _shared(leg: FoundLeg, other: FoundLeg) -> int:

@@ -219,6 +219,7 @@ def _level(robot: RobotWithLegs, angles: Angles, notes: Notes) -> Angles:
             "stance",
             f"at home the feet are not level: legs {', '.join(map(str, unreached))} do not reach "
             "the height of the others",
+            [name for leg in unreached for name in robot.names[leg - 1]],
         )
     elif np.ptp(bottoms) > 1e-3:
         notes.repair(

@@ -38,7 +38,7 @@ def test_two_chains_to_a_foot_are_one_leg() -> None:
 
     assert {leg.foot for leg in robot.legs} == {"FL_R", "FR_L", "RL_R", "RR_L"}  # the outer ones
     (note,) = [note for note in robot.notes if "two chains end at each foot" in note.text]
-    assert set(note.parts) == {"FL_L", "FR_R", "RL_L", "RR_R"}
+    assert set(note.parts) == {f"{foot}_lower" for foot in ("FL_L", "FR_R", "RL_L", "RR_R")}
     assert len(robot.feet) == 8
     assert robot.mass_kg == pytest.approx(3 + 8 * 0.21)
     torso = robot.model.links[0]

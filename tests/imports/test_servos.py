@@ -95,3 +95,27 @@ def test_springs_are_told() -> None:
     (note,) = [note for note in robot.notes if "springs of joints" in note.text]
     assert note.parts[:2] == ("FL_hip_joint", "FL_thigh_joint")
     assert not any("springs" in text for text in read(with_losses('stiffness="0.0"')).repairs)
+
+
+def test_joints_without_an_actuator_among_others_are_told() -> None:
+    text = dog(keyframes={"home": HOME})
+    for leg in ("FL", "RR"):
+        text = text.replace(f'<position joint="{leg}_calf_joint" kp="40" forcerange="-20 20"/>', "")
+    robot = read(text)
+
+    (note,) = [note for note in robot.notes if "had no actuator" in note.text]
+    assert set(note.parts) == {"FL_calf_joint", "RR_calf_joint"}
+
+
+def test_what_is_told_names_its_parts() -> None:
+    arm = (
+        '<body name="arm" pos="0 0 0.1"><joint name="shoulder" axis="0 1 0"/>'
+        '<geom type="capsule" fromto="0 0 0 0 0 0.1" size="0.01" mass="0.1"/></body>'
+    )
+    robot = read(dog(base="", keyframes={}, on_torso=arm))
+
+    parts = {note.text.partition(":")[0]: note.parts for note in robot.notes}
+    assert parts["trunk was fixed to the world; now it is free"] == ("trunk",)
+    assert parts["it has joints of no leg, which hold"] == ("shoulder",)
+    legs = parts["its 4 legs are the chains that reach lowest, to"]
+    assert set(legs) == {"FL_calf", "FR_calf", "RL_calf", "RR_calf"}
