@@ -48,9 +48,11 @@ def find_forward(
     sides = sides_by_names(mounts, names)
     front, hind, left, right = (sides[side] for side in get_args(Side))
     offer = None
-    if contradict(sides):
+    if contradict(sides) and front is not None and hind is not None:
         ahead, _ = _without_names(mounts)
         why = "since the names of the legs contradict their places"
+        by_names = _nearest_axis(front - hind, axes)
+        offer = Choices(forward=by_names) if by_names != _nearest_axis(ahead, axes) else None
     elif front is not None and hind is not None:
         ahead, why = front - hind, "by the names of the legs in front and behind"
     elif left is not None and right is not None:

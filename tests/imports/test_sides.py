@@ -115,3 +115,13 @@ def test_legs_that_are_evenly_spaced_walk_along_x(first_deg: float) -> None:
 
     assert angle == 0
     assert note.offer == Choices(forward="-x")
+
+
+def test_names_that_contradict_places_are_offered() -> None:
+    legs = {"FL": (-0.1, 0.2), "FR": (-0.1, -0.2), "RL": (0.1, 0.2), "RR": (0.1, -0.2)}
+
+    angle, note = forward(legs)
+
+    assert angle == 0
+    assert "contradict their places" in note.text
+    assert note.offer == Choices(forward="-x")
