@@ -37,6 +37,19 @@ export const angleOf = (direction) => {
  */
 export const withForward = (angle_deg) => ({ forward: directionOf(angle_deg), gait: null });
 
+/** Of another document nothing holds that names what is in this one. @param {string} file */
+export const withDocument = (file) =>
+  ({ file, feet: null, gait: null, forward: null, keyframe: null, home_rad: null, arguments: null });
+
+/** What is decided by taking an offer. @param {ReadingChoices} offer @returns {ReadingChoices} */
+export function asDecision(offer) {
+  const { file, forward, ...rest } = decided(offer);
+  return {
+    ...(file ? withDocument(file) : {}),
+    ...(forward === undefined || forward === null ? {} : withForward(angleOf(forward))), ...rest,
+  };
+}
+
 /** The feet that are chosen: by a person, or as they were found. */
 /** @type {(choices: ReadingChoices, robot: FoundRobot | null) => string[]} */
 export const chosenFeet = ({ feet }, robot) => feet ?? robot?.legs.map(({ foot }) => foot) ?? [];

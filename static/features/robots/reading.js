@@ -2,7 +2,7 @@
 // file read again with that. It is drawn in the 3D view of this page alone.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { canStart, pending, runPrimaryAction } from "../../js/actions.js";
-import { call } from "../../js/api.js";
+import { call, patiently } from "../../js/api.js";
 import { form } from "../../js/form.js";
 import { change, page } from "../../js/page-state.js";
 import { toast } from "../../js/page.js";
@@ -41,8 +41,9 @@ import { chooseStored, distinct, refresh } from "./stored-robots.js";
 /** A foot of a leg; where no legs were found, what could be one, of leg 0. */
 /** @typedef {{ name: string, leg: number, at_m: number[], radius_m: number }} ReadingFoot */
 /**
+ * `documents`: paths in the zip of those that could be the robot, of which the first is read.
  * @typedef {{
- *   id: string, file: string, documents: string[], document: string | null, choices: ReadingChoices,
+ *   id: string, file: string, documents: string[], choices: ReadingChoices,
  *   problem: string | null, robot: FoundRobot | null, feet: ReadingFoot[], arguments: Record<string, string>,
  *   notes: ReadingNote[], parts: ReadingPart[], scene: string,
  * }} Reading
@@ -109,8 +110,9 @@ async function open(name, read, stored = null) {
   });
   openAnew = read;
   try {
-    const answer = await read();
-    await take(answer, number);
+    // The server reads few files at once.
+    const answer = await patiently(read, () => number === openings);
+    if (answer) await take(answer, number);
   } catch (error) {
     if (number === openings) refusal.value = messageOf(/** @type {Error} */ (error));
   }
@@ -233,7 +235,9 @@ async function readAgain() {
   while (number === openings && sent !== choices.peek() && !wrongNumber(choices.peek().feet)) {
     sent = choices.peek();
     try {
-      await take(await readWith(sent), number, sent);
+      const wanted = sent;
+      const answer = await patiently(() => readWith(wanted), () => number === openings && wanted === choices.peek());
+      if (answer) await take(answer, number, wanted);
     } catch (error) {
       if (number === openings && sent === choices.peek()) refusal.value = messageOf(/** @type {Error} */ (error));
     }

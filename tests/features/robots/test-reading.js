@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { anglesIn } from "../../../static/features/robots/components/further-choices.js";
 import {
-  angleOf, chosenFeet, clickedPart, decided, directionInWords, directionOf, footOf, offerInWords, wantedGroups,
-  withFoot, withForward, withLegInNextGroup, wrongNumber,
+  angleOf, asDecision, chosenFeet, clickedPart, decided, directionInWords, directionOf, footOf, offerInWords,
+  wantedGroups, withFoot, withForward, withLegInNextGroup, wrongNumber,
 } from "../../../static/features/robots/reading-choices.js";
 import { lengthInWords, readingInWords, robotInWords } from "../../../static/features/robots/reading-words.js";
 import {
@@ -27,7 +27,7 @@ const PARTS = [
 const FEET = [{ name: "foot1", leg: 1, at_m: [0.2, 0.1, 0.01], radius_m: 0.01 }];
 /** @type {import("../../../static/features/robots/reading.js").Reading} */
 const READING = {
-  id: "a", file: "rex.urdf", documents: [], document: null, choices: {}, problem: null, robot: ROBOT,
+  id: "a", file: "rex.urdf", documents: [], choices: {}, problem: null, robot: ROBOT,
   feet: FEET, arguments: {}, parts: PARTS, scene: "",
   notes: [
     { kind: "repair", topic: "meshes", text: "A mesh was left out.", parts: ["torso"], offer: null },
@@ -88,6 +88,13 @@ test("an offer says what it does", () => {
   assert.equal(offerInWords({ feet: ["a", "b", "c", "d"], gait: null }), "Take 4 feet: a, b and c…");
   assert.equal(offerInWords({ file: "urdf/b.urdf" }), "Read b.urdf instead");
   assert.equal(offerInWords({ body_height_m: 0.12, angle_unit: "deg" }), "Stand 120 mm high, read angles as degrees");
+});
+
+test("an offer that is taken is decided, and what depended on what it changes is guessed anew", () => {
+  assert.deepEqual(asDecision({ scale: 0.001, feet: null }), { scale: 0.001 });
+  assert.deepEqual(asDecision({ forward: "-x" }), { forward: "-x", gait: null });
+  const { file, ...rest } = asDecision({ file: "b.xml" });
+  assert.deepEqual([file, new Set(Object.values(rest))], ["b.xml", new Set([null])]);
 });
 
 test("angles are assignments, and others are told", () => {

@@ -8,7 +8,7 @@ import {
   layerPlaces, legFeet, nextGroup, pictureSize, possibleFeet, shownNote, tags, toggleFoot, toggleTurning, turnBy,
   wantedForward,
 } from "../inspecting.js";
-import { directionInWords, offerInWords } from "../reading-choices.js";
+import { asDecision, directionInWords, offerInWords } from "../reading-choices.js";
 import { decide, extent, isReading, reading } from "../reading.js";
 import { arrowTips, nearestAngle, STEP_DEG } from "../sketch-geometry.js";
 import { boxOf, columnsOf, lineEnd, TAG } from "../tags.js";
@@ -229,7 +229,8 @@ const TagOf = ({ tag, isDot, style }) => html`
       ${isDot ? html`<b>?</b>` : html`<b>${tag.title}</b> <span>${tag.text}</span>`}
     </button>
     ${!isDot && tag.offer && html`
-      <button class="offer" title=${offerInWords(tag.offer)} onClick=${() => tag.offer && decide(tag.offer)}>
+      <button class="offer" title=${offerInWords(tag.offer)} 
+        onClick=${() => tag.offer && decide(asDecision(tag.offer))}>
         ${offerInWords(tag.offer)}
       </button>
     `}

@@ -5,7 +5,7 @@ import {
   chooseForward, clickMode, decisionProblem, feetChosen, groups, nextGroup, possibleFeet, shownNote, toggleFoot,
   wantedForward,
 } from "../inspecting.js";
-import { AXES, directionInWords, inTurn, offerInWords } from "../reading-choices.js";
+import { AXES, directionInWords, inTurn, offerInWords, withDocument, asDecision } from "../reading-choices.js";
 import { lengthInWords, missingInWords, robotInWords, topicTitle } from "../reading-words.js";
 import {
   canStore, canTrain, canUndo, choices, closeReading, corrected, decide, isStoring, keepRobot, opening, reading,
@@ -65,9 +65,9 @@ const Documents = ({ read }) => html`
   <div class="reading-row">
     <label for="reading-document">Document</label>
     <select id="reading-document" onChange=${(/** @type {{ target: HTMLSelectElement }} */ { target }) =>
-      decide({ file: target.value, feet: null, gait: null, forward: null, keyframe: null, home_rad: null })}>
-      ${read.documents.map((path) => html`
-        <option key=${path} value=${path} selected=${path === read.document}>${path}</option>
+      decide(withDocument(target.value))}>
+      ${read.documents.toSorted().map((path) => html`
+        <option key=${path} value=${path} selected=${path === read.documents[0]}>${path}</option>
       `)}
     </select>
   </div>
@@ -161,7 +161,7 @@ function Guesses({ notes }) {
         <li key=${index} id=${`reading-note-${index}`} tabindex="-1" class=${shownNote.value === index ? "shown" : ""}>
           <p><b>${topicTitle(note.topic)}</b> ${sentence(note.text)}</p>
           ${note.offer && html`
-            <button class="secondary compact" onClick=${() => note.offer && decide(note.offer)}>
+            <button class="secondary compact" onClick=${() => note.offer && decide(asDecision(note.offer))}>
               ${offerInWords(note.offer)}
             </button>
           `}
