@@ -146,10 +146,12 @@ class _Documents:
         """
         root = self.parse(path)
         arguments, missing, files = dict[str, str](), tuple[str, ...](), frozenset[str]()
+        children = {child.tag for child in root}
+        if sentence := other_document(root.tag, children, path):
+            raise DamagedFile(sentence)
         if root.tag not in _ROOTS:
             raise DamagedFile(
-                other_document(root.tag, path)
-                or f"{quoted(path)} begins with <{quoted(root.tag)}>; an MJCF file begins with "
+                f"{quoted(path)} begins with <{quoted(root.tag)}>; an MJCF file begins with "
                 "<mujoco>, a URDF with <robot>"
             )
         is_expanded = is_xacro(root)

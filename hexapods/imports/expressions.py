@@ -270,6 +270,17 @@ class Evaluator:
         values = [self._value(item, names) for item in node.elts]
         return check_size(values if isinstance(node, ast.List) else tuple(values))
 
+    def _comprehension(self, node: ast.ListComp | ast.GeneratorExp, names: Names) -> Value:
+        loop, *others = node.generators
+        if others:
+            raise InvalidExpression("a comprehension of several loops is not supported")
+        values = []
+        for item in _items(self._value(loop.iter, names)):
+            inner = _with_targets(loop.target, item, names)
+            if all(self._value(condition, inner) for condition in loop.ifs):
+                values.append(self._value(node.elt, inner))
+        return check_size(values)
+
     def _mapping(self, node: ast.Dict, names: Names) -> Value:
         if any(key is None for key in node.keys):
             raise InvalidExpression("`**` is not supported")
@@ -281,6 +292,24 @@ class Evaluator:
         if not all(isinstance(key, (str, int, float)) for key, _ in pairs):
             raise InvalidExpression("a key must be a text or a number")
         return check_size(dict(pairs))
+
+
+def _items(values: Value) -> list[Value]:
+    if not isinstance(values, (list, tuple, dict, str)):
+        raise InvalidExpression(f"a value of type {type(values).__name__} has no items")
+    return [*values]
+
+
+def _with_targets(target: ast.expr, item: Value, names: Names) -> Names:
+    """Return names with those that a loop sets."""
+    targets, items = [target], [item]
+    if isinstance(target, ast.Tuple):
+        targets, items = target.elts, _items(item)
+    if not all(isinstance(name, ast.Name) for name in targets) or len(targets) != len(items):
+        raise InvalidExpression("the loop of a comprehension must set names")
+    pairs = zip(targets, items, strict=True)
+    values = {name.id: value for name, value in pairs if isinstance(name, ast.Name)}
+    return lambda name: values[name] if name in values else names(name)
 
 
 @lru_cache(maxsize=4096)
@@ -451,13 +480,13 @@ _NODES = {
     ast.List: "_list",
     ast.Tuple: "_list",
     ast.Dict: "_mapping",
+    ast.ListComp: "_comprehension",
+    ast.GeneratorExp: "_comprehension",
 }
 _UNSUPPORTED = {
     "Lambda": "a function of its own",
-    "ListComp": "a comprehension",
     "DictComp": "a comprehension",
     "SetComp": "a comprehension",
-    "GeneratorExp": "a comprehension",
     "JoinedStr": "an f-string",
     "Starred": "`*`",
     "NamedExpr": "`:=`",

@@ -24,6 +24,7 @@ from hexapods.imports.upload import (
     MAX_UPLOAD_BYTES,
     MESHES,
     last_part,
+    plain_name,
 )
 
 MAX_FILES = 10_000
@@ -117,7 +118,7 @@ def chosen_files(sizes: Mapping[str, int], read: Read) -> list[str]:
     meshes = [path for path in sizes if path.lower().endswith(MESHES)]
     named = re.compile("|".join(map(translate, sorted(patterns))) or r"(?!)")
     for path in meshes:
-        name = posixpath.basename(path).casefold()
+        name = plain_name(posixpath.basename(path))
         if name in names or named.match(name):
             chosen.append(path)
     folders = {posixpath.dirname(path) for path in chosen if path.lower().endswith(".gltf")}
@@ -139,9 +140,9 @@ def names_in(text: str) -> set[str]:
     for piece in _PIECE.findall(text):
         path = _EXPRESSION.sub("*", piece.strip())
         for word in {path, *path.split()}:
-            name = last_part(word).casefold()
+            name = plain_name(last_part(word))
             if "." in name or ("*" in name and "/" in word):
-                names |= {name, unquote(name)}
+                names |= {name, plain_name(unquote(name))}
     return names
 
 
@@ -154,7 +155,9 @@ def _walked(folder: Path) -> dict[str, int]:
         try:
             entries = sorted(os.scandir(folder / at), key=lambda entry: entry.name)
         except OSError as error:
-            raise InvalidInput(f"cannot read {folder / at}: {error.strerror}") from error
+            if at:  # a folder in it that others may not read
+                continue
+            raise InvalidInput(f"cannot read {folder}: {error.strerror}") from error
         for entry in entries:
             path = posixpath.join(at, entry.name)
             if entry.is_symlink() or _is_skipped([entry.name]):

@@ -59,6 +59,8 @@ def codec_of(data: bytes) -> str:
         codec = ""
     if not _ENCODINGS.fullmatch(codec):
         raise Malformed(f"line 1: the encoding {quoted(name)} is unknown; save it as UTF-8")
+    if codec.startswith(("utf-16", "utf-32")):
+        return "utf-8"  # its declaration could not be read otherwise
     return codec
 
 
@@ -77,8 +79,12 @@ def decode(data: bytes) -> tuple[str, str | None]:
         return data.decode(codec), None
     except UnicodeError as error:
         line = data.count(b"\n", 0, getattr(error, "start", 0)) + 1
-    text = "".join(map(_of_windows, data.decode("cp1252", "surrogateescape")))
-    return text, f"line {line} is not in {codec.upper()}, and was read as Windows-1252"
+    try:
+        text, other = data.decode("utf-8"), "UTF-8"
+    except UnicodeError:
+        text = "".join(map(_of_windows, data.decode("cp1252", "surrogateescape")))
+        other = "Windows-1252"
+    return text, f"line {line} is not in {codec.upper()}, and was read as {other}"
 
 
 def _of_windows(character: str) -> str:

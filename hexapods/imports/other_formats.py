@@ -1,7 +1,7 @@
 """Recognise files that are no documents of robots by how they begin, and say what to do instead."""
 
 import posixpath
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from hexapods.imports.notes import quoted
 
@@ -32,7 +32,7 @@ _KINDS = {
     "iges": ("an IGES file of CAD", _CAD),
     "cad": ("a file of a CAD program", _CAD),
     "gltf": ("glTF", _MESH),
-    "stl": ("an STL mesh", _MESH),
+    "stl": ("a mesh", _MESH),
     "obj": ("an OBJ mesh", _MESH),
     "ply": ("a PLY mesh", _MESH),
     "fbx": ("FBX", _MESH),
@@ -62,6 +62,9 @@ _KINDS = {
     "config": ("the description of a Gazebo model", "give the folder with the robot's URDF"),
     "openrave": ("a robot of OpenRAVE", _EXPORT),
     "bullet": ("a file of Bullet", "give the URDF from which it was made"),
+    "srdf": ("SRDF of MoveIt, which has no links", "give the folder with the robot's URDF"),
+    "log": ("a recording", "give the robot's URDF or MJCF"),
+    "other": ("no XML", "give the robot's MJCF, URDF or xacro, or the folder with it"),
     "matlab": ("a file of MATLAB", "export the robot as URDF (`exportrobot` writes it)"),
 }
 """What each kind is called, and what to do."""
@@ -92,6 +95,8 @@ _BEGINNINGS: tuple[tuple[int, bytes, str], ...] = (
     (0, b"AC10", "cad"),
     (0, b"BULLET", "bullet"),
     (0, b"MATLAB 5", "matlab"),
+    (0, b"#ROSBAG", "log"),
+    (0, b"\x89MCAP", "log"),
 )
 """Offset, bytes and kind."""
 _ENDINGS = {
@@ -107,9 +112,11 @@ _ENDINGS = {
     ),
     **dict.fromkeys((".gz", ".tgz"), "gzip"),
     **dict.fromkeys((".mat", ".slx"), "matlab"),
+    **dict.fromkeys((".x_t", ".sat", ".skp", ".scad"), "cad"),
+    **dict.fromkeys((".bag", ".db3", ".mcap"), "log"),
+    **dict.fromkeys((".stl", ".3mf"), "stl"),
     ".7z": "7z",
     ".rar": "rar",
-    ".stl": "stl",
     ".obj": "obj",
     ".ply": "ply",
     ".fbx": "fbx",
@@ -146,13 +153,22 @@ def other_format(data: bytes, file_name: str) -> str | None:
         return None
     if text.startswith((b"{", b"[")):
         return _sentence(file_name, "gltf" if _ending(file_name) == ".gltf" else "json")
-    kind_of_ending = _ENDINGS.get(_ending(file_name))
-    return _sentence(file_name, kind_of_ending) if kind_of_ending else None
+    if kind_of_ending := _ENDINGS.get(_ending(file_name)):
+        return _sentence(file_name, kind_of_ending)
+    return _sentence(file_name, "other") if text else None
 
 
-def other_document(root: str, file_name: str) -> str | None:
-    """Return what an XML document with this root is, and what to do; None if it is not known."""
+def other_document(root: str, children: Collection[str], file_name: str) -> str | None:
+    """Return what an XML document is, and what to do; None if it may be a robot or is unknown.
+
+    Args:
+        root: tag of its root.
+        children: tags of the root's children.
+        file_name: its name.
+    """
     kind = _ROOTS.get(root)
+    if root == "robot" and "link" not in children and "disable_collisions" in children:
+        kind = "srdf"
     return _sentence(file_name, kind) if kind else None
 
 

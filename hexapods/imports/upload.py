@@ -10,6 +10,7 @@ import posixpath
 import re
 import stat
 import struct
+import unicodedata
 import zipfile
 import zlib
 from collections.abc import Iterable, Sequence
@@ -36,6 +37,8 @@ _MAX_ENTRIES = 10_000
 """Members of a zip of any kind."""
 _MAX_DIRECTORY_BYTES = 2 << 20
 _MAX_LINK_BYTES = 1000
+_ENCRYPTED, _UTF_8 = 0x1, 0x800
+"""Bits of a member's flags."""
 _START_BYTES = 300
 _MAX_PACKAGE_BYTES = 64 << 10
 _END = struct.Struct("<4s4H2LH")  # end of central directory record, without a comment
@@ -46,6 +49,11 @@ _PACKAGE_NAME = re.compile(rb"<name>\s*([\w.-]{1,200})\s*</name>")
 def last_part(path: str) -> str:
     """Return the last part of a path with slashes or backslashes."""
     return path.replace("\\", "/").rstrip("/").rpartition("/")[2]
+
+
+def plain_name(name: str) -> str:
+    """Return a name without regard to case, and to how accents are composed."""
+    return unicodedata.normalize("NFC", name).casefold()
 
 
 class Upload:
@@ -82,21 +90,23 @@ class Upload:
             self.paths = [self.name]
         self._by_name: dict[str, list[str]] = {}
         for path in [*self._members, *self._links]:
-            self._by_name.setdefault(posixpath.basename(path).casefold(), []).append(path)
+            self._by_name.setdefault(plain_name(posixpath.basename(path)), []).append(path)
         self._packages: dict[str, str] | None = None
 
     def _add(self, info: zipfile.ZipInfo) -> None:
-        path = info.orig_filename.replace("\\", "/")
+        path = _name_of(info).replace("\\", "/")
         if "\0" in path or path.startswith("/") or ".." in path.split("/") or ":" in path[:3]:
             self.outside.append(path)
             return
         if info.is_dir():
             return
         kind, name = stat.S_IFMT(info.external_attr >> 16), posixpath.normpath(path)
-        if info.flag_bits & 1:
-            raise DamagedFile(f"in the zip {quoted(path)} is encrypted; give it without a password")
         if name in self._members or name in self._links:
-            raise DamagedFile(f"the zip has {quoted(path)} twice")
+            if name.lower().endswith((*DOCUMENTS, *MESHES)):
+                raise DamagedFile(f"the zip has {quoted(path)} twice")
+            return
+        if info.flag_bits & _ENCRYPTED and name.lower().endswith((*DOCUMENTS, *MESHES)):
+            raise DamagedFile(f"in the zip {quoted(path)} is encrypted; give it without a password")
         if kind == stat.S_IFLNK:
             self._links[name] = info
         elif kind in (0, stat.S_IFREG):
@@ -168,6 +178,8 @@ class Upload:
         plain = wanted.strip().replace("\\", "/")
         if scheme := _SCHEME.match(plain):
             rest = plain[scheme.end() :]
+            if scheme[1].lower() in ("http", "https"):
+                rest = re.split(r"[?#]", rest, maxsplit=1)[0]
             parts = self._in_package(rest) if scheme[1].lower() == "package" else rest.split("/")
         else:
             if path := self.beside(wanted, document_path):
@@ -220,19 +232,18 @@ class Upload:
     def _longest_match(self, parts: Sequence[str], ignores_case: bool) -> str | None:
         """Return the path with the most of its last parts the same; of equals the shortest."""
 
-        def plain(name: str) -> str:
-            return name.casefold() if ignores_case else name
-
         def same(path: str) -> int:
             pairs = zip(reversed(path.split("/")), reversed(parts), strict=False)
             count = 0
             for folder_a, folder_b in pairs:
-                if plain(folder_a) != plain(folder_b):
+                if folder_a != folder_b and not (
+                    ignores_case and plain_name(folder_a) == plain_name(folder_b)
+                ):
                     break
                 count += 1
             return count
 
-        paths = self._by_name.get(parts[-1].casefold(), []) if parts else []
+        paths = self._by_name.get(plain_name(parts[-1]), []) if parts else []
         best = max(paths, key=lambda path: (same(path), -len(path)), default=None)
         return best if best is not None and same(best) else None
 
@@ -272,6 +283,17 @@ def _open(data: bytes) -> zipfile.ZipFile:
         EOFError,
     ) as error:
         raise DamagedFile(f"the zip is damaged: {error}") from error
+
+
+def _name_of(info: zipfile.ZipInfo) -> str:
+    """Return a member's path; some programs write UTF-8 without saying so."""
+    name = info.orig_filename
+    if info.flag_bits & _UTF_8:
+        return name
+    try:
+        return name.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return name
 
 
 def _checked(infos: Sequence[zipfile.ZipInfo], size: int) -> Iterable[zipfile.ZipInfo]:

@@ -27,7 +27,7 @@ from hexapods.imports.yaml_values import MAX_YAML_BYTES, read_yaml
 
 MAX_CALLS = 5000
 """Macros that are called, and files that are included, in a document."""
-MAX_DEPTH = 100
+MAX_DEPTH = 200
 """Elements, macros and files within each other."""
 _PREFIX = "xacro:"
 _BARE = frozenset({"property", "macro", "include", "if", "unless", "insert_block", "arg"})
@@ -179,11 +179,22 @@ class Expansion:
 
     def _copy(self, element: Element, scope: Scope) -> Element:
         attributes = {
-            name: self._texts.text(text, scope)
+            name: self._file_name(text, scope)
+            if (element.tag, name) == ("mesh", "filename")
+            else self._texts.text(text, scope)
             for name, text in element.attributes.items()
             if not name.startswith((_PREFIX, "xmlns"))
         }
         return replace(element, children=[], attributes=attributes)
+
+    def _file_name(self, text: str, scope: Scope) -> str:
+        """Return the path of a mesh; its end is enough to find it."""
+        try:
+            return self._texts.text(text, scope)
+        except InvalidExpression:
+            if text.endswith("}") or "/" not in text:
+                raise
+            return last_part(text)
 
     def _required(self, element: Element, name: str, scope: Scope) -> str:
         if name not in element.attributes:
@@ -343,13 +354,14 @@ class Expansion:
             raise InvalidExpression(
                 f"the argument {quoted(name)!r} has no default: choose its value by `arguments`"
             )
+        self._declared.setdefault(name, self._arguments[name])
         return self._arguments[name]
 
     def _command(self, text: str) -> Value:
         """Return the value of `$(…)`."""
         words = text.split()
         kind, rest = (words[0], words[1:]) if words else ("", [])
-        if kind == "find" and len(rest) == 1:
+        if kind in ("find", "find-pkg-share") and len(rest) == 1:
             return f"/{self._upload.package_folder(rest[0])}"
         if kind == "arg" and len(rest) == 1:
             return self._argument_text(rest[0])

@@ -84,6 +84,8 @@ def test_what_nothing_reads_is_refused_with_the_reason(text: str, said: str) -> 
         ("shift_jis", "Shift_JIS", "脚"),
         ("euc_kr", "EUC-KR", "다리"),
         ("koi8-r", "KOI8-R", "нога"),
+        # Programs in C# write this.
+        ("utf-8", "utf-16", "腿"),
     ],
 )
 def test_each_encoding_is_read(encoding: str, declared: str | None, name: str) -> None:
@@ -101,6 +103,16 @@ def test_bytes_that_are_not_in_the_declared_encoding_are_told() -> None:
 
     assert root.children[0].attributes == {"name": "Füße"}
     assert "line 2 is not in UTF-8, and was read as Windows-1252" in repairs[0]
+
+
+def test_utf_8_that_is_declared_as_something_else_is_read() -> None:
+    repairs: list[str] = []
+
+    text = '<?xml version="1.0" encoding="GB2312"?><a name="腿éÿ"/>'
+    root = read_xml(text.encode(), "robot.xml", repairs=repairs)
+
+    assert root.attributes == {"name": "腿éÿ"}
+    assert "line 1 is not in GB18030, and was read as UTF-8" in repairs[0]
 
 
 @pytest.mark.parametrize("name", ["utf-99", "unicode_escape", "idna", "rot13", "zlib", "utf-7"])

@@ -88,6 +88,25 @@ def test_a_link_to_a_file_in_the_zip_is_followed() -> None:
     assert upload.find("knee.stl", "robot.xml") is None
 
 
+def test_a_name_in_utf_8_that_does_not_say_so_is_read() -> None:
+    data = zipped({"f\u00fc\u00dfe.stl": ""})
+    without_flag = bytearray(data)
+    for mark, offset in ((b"PK\3\4", 6), (b"PK\1\2", 8)):
+        at = data.index(mark) + offset
+        without_flag[at : at + 2] = b"\0\0"
+
+    assert Upload(bytes(without_flag), "robot.zip").paths == ["f\u00fc\u00dfe.stl"]
+
+
+def test_what_is_no_document_nor_mesh_may_be_there_twice() -> None:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("a/readme.txt", "")
+        archive.writestr("a//readme.txt", "")
+
+    assert Upload(buffer.getvalue(), "robot.zip").paths == ["a/readme.txt"]
+
+
 def test_members_with_one_path_are_refused() -> None:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
@@ -116,6 +135,7 @@ def files() -> Upload:
         "pkg/meshes/my hip.stl",
         "pkg/meshes/a b.stl",
         "pkg/meshes/a%20b.stl",
+        "pkg/meshes/f\u00fc\u00dfe.stl",
     ]
     return Upload(zipped(dict.fromkeys(names, "")), "robot.zip")
 
@@ -140,6 +160,10 @@ def files() -> Upload:
         ("meshes/my%20hip.stl", "pkg/meshes/my hip.stl"),
         ("meshes/My%20Hip.stl", "pkg/meshes/my hip.stl"),
         ("meshes/a%20b.stl", "pkg/meshes/a%20b.stl"),
+        ("https://example.org/raw/pkg/meshes/hip.stl?raw=true#1", "pkg/meshes/hip.stl"),
+        ("file:///C:/pkg/meshes/left/hip.stl", "pkg/meshes/left/hip.stl"),
+        ("~/pkg/meshes/hip.stl", "pkg/meshes/hip.stl"),
+        ("meshes/fu\u0308\u00dfe.stl", "pkg/meshes/f\u00fc\u00dfe.stl"),
     ],
 )
 def test_a_mesh_is_found_by_the_most_of_its_path(

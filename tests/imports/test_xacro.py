@@ -11,7 +11,7 @@ from hexapods.imports.imported import RobotReading
 from hexapods.imports.upload import Upload
 from hexapods.imports.xacro import Expansion
 from hexapods.imports.xml import Element, read_xml
-from tests.imports.robots import bug, dog, inspect, read, zipped
+from tests.imports.robots import box_triangles, bug, dog, inspect, read, stl, zipped
 from tests.imports.robots_in_parts import in_xacro
 from tests.imports.test_mjcf import mentions
 
@@ -197,7 +197,7 @@ def test_what_is_no_body_is_not_evaluated() -> None:
         ('<xacro:element xacro:name="a b"/>', "'a b' is no name of an element"),
         ('<xacro:property value="1"/>', "it needs the attribute name"),
         ("<a v=\"${xacro.load_yaml('no.yaml')}\"/>", "no.yaml is missing from the upload"),
-        ('<a v="${[n for n in range(3)]}"/>', "a comprehension is not supported"),
+        ('<a v="${(lambda: 1)()}"/>', "a function of its own is not supported"),
     ],
 )
 def test_what_cannot_be_expanded_is_named(text: str, said: str) -> None:
@@ -212,6 +212,37 @@ def test_messages_name_the_file_of_the_macro() -> None:
 
     with pytest.raises(DamagedFile, match=r"<a> in line 3 of inner\.xacro: 'b' is not defined"):
         values('<xacro:include filename="inner.xacro"/><xacro:m/>', inner=inner)
+
+
+def test_a_loop_by_a_macro_that_calls_itself_is_expanded() -> None:
+    text = (
+        '<xacro:macro name="loop" params="n"><a v="${n}"/><xacro:if value="${n > 1}">'
+        '<xacro:loop n="${n - 1}"/></xacro:if></xacro:macro><xacro:loop n="50"/>'
+    )
+
+    assert values(text) == [str(n) for n in range(50, 0, -1)]
+
+
+def test_a_mesh_with_an_unknown_folder_is_found_by_its_name() -> None:
+    mesh = (
+        '<visual><geometry><mesh filename="${ROOT}/meshes/hull.stl" scale="0.5 0.5 0.5"/>'
+        "</geometry></visual>"
+    )
+    hull = stl(box_triangles((0.4, 0.2, 0.08)))
+
+    robot = read(zipped({"bug.urdf": bug(torso=mesh), "hull.stl": hull}), "bug.zip")
+
+    assert not any("missing" in repair for repair in robot.repairs)
+
+
+def test_an_argument_that_is_not_declared_can_be_chosen() -> None:
+    text = bug().replace('name="bug"', 'name="$(arg name)"')
+    with pytest.raises(DamagedFile, match="the argument 'name' has no default"):
+        read(text, "bug.urdf")
+
+    reading = inspect(text, "bug.urdf", Choices(arguments={"name": "Rex"}))
+
+    assert (reading.valid_robot().name, reading.arguments) == ("Rex", {"name": "Rex"})
 
 
 def test_a_top_document_is_taken_and_not_its_parts() -> None:

@@ -284,6 +284,11 @@ def _json(data: bytes) -> dict[str, Any]:
     members = _READING_MEMBERS if "reading" in content else _BODY_MEMBERS
     unknown = [member for member in content if member not in members]
     if "format" not in content and unknown:
+        if len(unknown) == len(content):
+            raise InvalidInput(
+                f"it is JSON of another program, with {unknown[0][:100]!r}: {_TOLD}; or enter its "
+                "lengths in the editor of bodies"
+            )
         raise InvalidInput(f"unknown member {unknown[0][:100]!r}: {_TOLD}")
     return dict(content)
 
