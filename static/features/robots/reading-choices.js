@@ -1,5 +1,6 @@
 // Decisions about a robot from a file, as a person makes them by clicks, in place of what was guessed: pure functions.
 import { listed } from "../../js/format.js";
+import { massInWords } from "./quantities.js";
 
 /** @import { GaitConfig, GaitParts } from "../../js/types.js" */
 /** @import { FoundRobot, ReadingChoices, ReadingFoot, ReadingPart } from "./reading.js" */
@@ -153,6 +154,7 @@ const OFFERS = {
   keyframe: (name) => `Stand as in ${name}`,
   body_height_m: (height_m) => `Stand ${Math.round(1000 * height_m)} mm high`,
   home_rad: () => "Stand so",
+  mass_kg: (mass_kg) => `Weigh ${massInWords(mass_kg)}`,
   servo_torque_nm: (torque) => `Take ${torque} N·m`,
 };
 

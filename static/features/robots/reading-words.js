@@ -1,22 +1,9 @@
 // Sentences about a robot as it was read.
 import { count } from "../../js/format.js";
+import { lengthInWords, massInWords } from "./quantities.js";
 import { directionInWords, groupsInWords } from "./reading-choices.js";
 
 /** @import { FoundRobot, Reading } from "./reading.js" */
-
-const MILLIMETRES = 1000;
-
-/** @param {number} mass_kg */
-function massInWords(mass_kg) {
-  if (mass_kg >= 1) return `${Number(mass_kg.toPrecision(3)).toLocaleString("en")}\u00a0kg`;
-  if (mass_kg >= 1e-3) return `${Number((1e3 * mass_kg).toPrecision(3))}\u00a0g`;
-  return `${Number((1e6 * mass_kg).toPrecision(2))}\u00a0mg`;
-}
-
-/** A length: "84 mm", "0.31 m", "1.2 m". @param {number} length_m */
-export const lengthInWords = (length_m) => (length_m < 0.1
-  ? `${Number((MILLIMETRES * length_m).toPrecision(2))}\u00a0mm`
-  : `${Number(length_m.toPrecision(2)).toLocaleString("en")}\u00a0m`);
 
 /** "6 legs, 2.3 kg, stands 84 mm high" @param {FoundRobot} robot */
 export const robotInWords = ({ legs, mass_kg, body_height_m }) =>

@@ -24,7 +24,7 @@ import { chooseStored, distinct, refresh } from "./stored-robots.js";
  * @typedef {Partial<{
  *   file: string | null, forward: string | number | null, feet: string[] | null, keyframe: string | null,
  *   home_rad: Record<string, number> | null, gait: GaitConfig | null, servo_torque_nm: number | null,
- *   servo_kp: number | null, servo_kv: number | null, scale: number | null, up: string | null,
+ *   servo_kp: number | null, servo_kv: number | null, scale: number | null, mass_kg: number | null, up: string | null,
  *   angle_unit: string | null, body_height_m: number | null, arguments: Record<string, string> | null,
  * }>} ReadingChoices
  */

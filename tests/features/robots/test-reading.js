@@ -6,7 +6,8 @@ import {
   angleOf, asDecision, chosenFeet, clickedPart, decided, directionInWords, directionOf, footOf, offerInWords,
   wantedGroups, withFoot, withForward, withLegInNextGroup, wrongNumber,
 } from "../../../static/features/robots/reading-choices.js";
-import { lengthInWords, readingInWords, robotInWords } from "../../../static/features/robots/reading-words.js";
+import { lengthInWords } from "../../../static/features/robots/quantities.js";
+import { readingInWords, robotInWords } from "../../../static/features/robots/reading-words.js";
 import {
   arrowPoints, arrowTips, extentOf, nearestAngle, numberPoint, viewOf,
 } from "../../../static/features/robots/sketch-geometry.js";
@@ -84,6 +85,7 @@ test("an offer says what it does", () => {
   assert.equal(offerInWords({ scale: 10, up: "y" }), "Read it at 10:1, read it with y up");
   assert.equal(offerInWords({ gait: { groups: [[1, 4], [2, 3]] } }), "Group legs 1+4, 2+3");
   assert.equal(offerInWords({ gait: "trot" }), "Take these groups");
+  assert.equal(offerInWords({ mass_kg: 0.5 }), "Weigh 500\u00a0g");
   assert.equal(offerInWords({ forward: "-x" }), "Walk along −x");
   assert.equal(offerInWords({ feet: ["a", "b", "c", "d"], gait: null }), "Take 4 feet: a, b and c…");
   assert.equal(offerInWords({ file: "urdf/b.urdf" }), "Read b.urdf instead");

@@ -9,10 +9,11 @@ const UPS = [["", "as found"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "−z"
 const UNITS = [["", "as found"], ["rad", "radians"], ["deg", "degrees"]];
 /** The lengths of a file in metres, by the scale. */
 const LENGTHS = [["", "as found"], ["0.001", "millimetres"], ["0.01", "centimetres"], ["0.0254", "inches"]];
-/** @typedef {"scale" | "servo_torque_nm" | "servo_kp" | "servo_kv"} NumberName */
+/** @typedef {"scale" | "mass_kg" | "servo_torque_nm" | "servo_kp" | "servo_kv"} NumberName */
 /** Name, title, least and most. @type {[NumberName, string, number, number][]} */
 const NUMBERS = [
-  ["scale", "Scale", 0.001, 1000], ["servo_torque_nm", "Largest torque, N·m", 0.001, 10_000],
+  ["scale", "Scale", 0.001, 1000], ["mass_kg", "Mass, kg", 0.001, 10_000],
+  ["servo_torque_nm", "Largest torque, N·m", 0.001, 10_000],
   ["servo_kp", "Stiffness, N·m/rad", 0.01, 1e6], ["servo_kv", "Damping, N·m·s/rad", 0.0001, 1e5],
 ];
 

@@ -6,7 +6,8 @@ import {
   wantedForward,
 } from "../inspecting.js";
 import { AXES, directionInWords, inTurn, offerInWords, withDocument, asDecision } from "../reading-choices.js";
-import { lengthInWords, missingInWords, robotInWords, topicTitle } from "../reading-words.js";
+import { lengthInWords } from "../quantities.js";
+import { missingInWords, robotInWords, topicTitle } from "../reading-words.js";
 import {
   canStore, canTrain, canUndo, choices, closeReading, corrected, decide, isStoring, keepRobot, opening, reading,
   readingAnnounced, refusal, robotName, trainRobot, undoDecision,

@@ -53,7 +53,7 @@ def told(panel: Locator, words: str | re.Pattern[str]) -> None:
     expect(panel.locator("p.sr-only[role=status]")).to_contain_text(words)
 
 
-def test_six_robots_are_corrected_without_typing(
+def test_seven_robots_are_corrected_without_typing(
     dashboard: Dashboard, server: Serving, tmp_path: Path
 ) -> None:
     opened(dashboard, server)
@@ -95,8 +95,14 @@ def test_six_robots_are_corrected_without_typing(
     told(panel, re.compile("stands 0.2"))
     assert decided(keep(dashboard, panel))["body_height_m"] < before_m
 
+    # A scale that is offered.
+    panel = hand(dashboard, {"huge.urdf": longer(bug(), 10)})
+    panel.get_by_role("button", name="Read it at 1:10", exact=True).click()
+    told(panel, "stands 0.1")
+    assert decided(keep(dashboard, panel)) == {"scale": 0.1}
+
     # Its lengths are in millimetres: it is shown, too, though it is none yet.
-    panel = hand(dashboard, {"large.urdf": in_millimetres(bug())})
+    panel = hand(dashboard, {"large.urdf": longer(bug(), 1000)})
     expect(panel.get_by_role("alert")).to_contain_text("250 m long")
     expect(panel.get_by_role("button", name="Keep")).to_have_attribute("aria-disabled", "true")
     panel.get_by_label("Lengths are in").select_option("millimetres")
@@ -104,17 +110,27 @@ def test_six_robots_are_corrected_without_typing(
     expect(panel.get_by_role("alert")).to_have_count(0)
     assert decided(keep(dashboard, panel)) == {"scale": 0.001}
 
-    assert len({robot["name"] for robot in stored(dashboard)}) == len(stored(dashboard)) == 5
+    # Another document of the folder.
+    panel = hand(dashboard, {"six.urdf": bug(), "spot.xml": dog(keyframes={"home": HOME})})
+    document = panel.get_by_label("Document")
+    other, words = {"spot.xml": ("six.urdf", "6 legs"), "six.urdf": ("spot.xml", "4 legs")}[
+        document.input_value()
+    ]
+    document.select_option(other)
+    told(panel, words)
+    assert decided(keep(dashboard, panel)) == {"file": other}
+
+    assert len({robot["name"] for robot in stored(dashboard)}) == len(stored(dashboard)) == 7
 
 
-def in_millimetres(urdf: str) -> str:
-    """Return a URDF with lengths of a thousand times what they were."""
+def longer(urdf: str, times: float) -> str:
+    """Return a URDF with lengths of so many times what they were."""
 
-    def longer(match: re.Match[str]) -> str:
+    def multiplied(match: re.Match[str]) -> str:
         name, values = match.groups()
-        return f'{name}="{" ".join(str(1000 * float(value)) for value in values.split())}"'
+        return f'{name}="{" ".join(str(times * float(value)) for value in values.split())}"'
 
-    return re.sub(r'((?<=origin )xyz|size|radius|length)="([^"]+)"', longer, urdf)
+    return re.sub(r'((?<=origin )xyz|size|radius|length)="([^"]+)"', multiplied, urdf)
 
 
 def test_a_refused_robot_is_mended_by_choosing_its_feet(
