@@ -149,6 +149,7 @@ class RobotReading(Record):
         problem: why there is no robot; null if there is one.
         notes: what was guessed and repaired, as far as it was read.
         sketch: bodies and feet.
+        document: path in the zip of what was read; null if it was given alone.
         documents: paths in the zip of all documents that could be the robot, fit for
             `Choices.file`.
         arguments: values of the arguments of a xacro, fit for `Choices.arguments`.
@@ -158,6 +159,7 @@ class RobotReading(Record):
     problem: str | None
     notes: tuple[Note, ...]
     sketch: Sketch
+    document: str | None = None
     documents: tuple[str, ...] = ()
     arguments: dict[str, str] = field(default_factory=dict)
 

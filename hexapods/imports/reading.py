@@ -45,7 +45,11 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
         raise type(error)(document.with_missing(str(error))) from error
     problem = None if reading.problem is None else document.with_missing(reading.problem)
     return replace(
-        reading, problem=problem, documents=document.documents, arguments=document.arguments
+        reading,
+        problem=problem,
+        document=document.path if upload.is_zip else None,
+        documents=document.documents,
+        arguments=document.arguments,
     )
 
 

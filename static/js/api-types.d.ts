@@ -4071,6 +4071,10 @@ export interface RobotReadingView {
    */
   file: string;
   /**
+   * path in a zip of what was read; null if it was given alone.
+   */
+  document: string | null;
+  /**
    * paths in a zip of all documents that could be the robot, fit for `choices.file`.
    */
   documents: string[];

@@ -80,6 +80,7 @@ class RobotReadingView(Answer):
     Attributes:
         id: of the file, which the server keeps for a while; empty for a body.
         file: name of the file.
+        document: path in a zip of what was read; null if it was given alone.
         documents: paths in a zip of all documents that could be the robot, fit for `choices.file`.
         arguments: values of the arguments of a xacro, fit for `choices.arguments`.
         choices: choices by which it was read.
@@ -94,6 +95,7 @@ class RobotReadingView(Answer):
 
     id: str
     file: str
+    document: str | None
     documents: list[str]
     arguments: dict[str, str]
     choices: Choices
@@ -113,6 +115,7 @@ def reading_view(
     return RobotReadingView(
         id=file_id,
         file=file_name,
+        document=reading.document,
         documents=list(reading.documents),
         arguments=reading.arguments,
         choices=choices,
@@ -135,6 +138,7 @@ def body_view(body: Robot, spec: AnyGait) -> RobotReadingView:
     return RobotReadingView(
         id="",
         file="",
+        document=None,
         documents=[],
         arguments={},
         choices=AS_FOUND,

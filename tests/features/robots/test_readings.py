@@ -15,6 +15,7 @@ from app.storage.errors import NotFound
 from hexapods.domain.errors import DamagedFile
 from tests.api.calls import Api, refused
 from tests.imports.robots import HOME, bug, dog, zipped
+from tests.imports.robots_in_parts import in_xacro
 
 SPOT = dog(keyframes={"home": HOME})
 TWO_LEGS = dog({"FL": (0.2, 0.1), "FR": (0.2, -0.1)}, keyframes={"home": HOME})
@@ -129,6 +130,19 @@ def test_a_body_is_drawn_in_the_same_way(api: Api) -> None:
     assert {f"/world/sketch/part/{n}" for n in range(len(reading["parts"]))} <= nodes(reading)
     for foot in reading["feet"]:
         assert foot["at_m"][2] == pytest.approx(foot["radius_m"], abs=1e-6)
+
+
+def test_documents_and_arguments_can_be_chosen(api: Api) -> None:
+    document = "repo/urdf/bug.urdf.xacro"
+    reading = look(api, zipped({**in_xacro(), "small/dog.xml": SPOT}), "repo.zip")
+    assert (reading["document"], reading["documents"]) == (document, [document, "small/dog.xml"])
+    assert reading["arguments"] == {"effort": "2.5", "sim": "false"}
+
+    stronger = correct(api, reading, arguments={"effort": "3"})
+    other = correct(api, reading, file="small/dog.xml")
+
+    assert stronger["arguments"] == {"effort": "3", "sim": "false"}
+    assert (other["document"], len(other["robot"]["legs"])) == ("small/dog.xml", 4)
 
 
 @pytest.mark.parametrize(
