@@ -1,13 +1,17 @@
 """Damages files at random, as disks, networks and editors do, and as who means harm does."""
 
 import io
+import json
 import re
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
+from hexapods.imports.obj import write_obj
+from tests.imports.collada_files import dae
+from tests.imports.gltf_files import document, glb, gltf
+from tests.imports.robots import HOME, box_triangles, bug, dog, stl, text_stl, zipped
 from tests.imports.robots_in_parts import in_parts, in_xacro
 
 _NUMBERS = ("nan", "inf", "-0", "0", "-1", "1e308", "-1e308", "1e-308", "1e9", "99999999999")
@@ -33,7 +37,24 @@ def originals() -> list[bytes]:
         zipped({"dog.xml": dog(sections=asset, on_torso=drawn), "hull.stl": hull}),
         zipped(in_parts()),
         zipped(in_xacro()),
+        *(zipped({"bug.urdf": bug(torso=_drawn(next(iter(mesh)))), **mesh}) for mesh in _meshes()),
     ]
+
+
+def _meshes() -> Iterator[dict[str, bytes]]:
+    """Iterate over meshes as text and in the other formats; the first file names the others."""
+    triangles = box_triangles((0.4, 0.2, 0.1), cells=3)
+    yield {"hull.stl": text_stl(triangles)}
+    yield {"hull.obj": write_obj(triangles.reshape(-1, 3), np.arange(162).reshape(-1, 3))}
+    yield {"hull.dae": dae()}
+    yield {"hull.glb": glb(document(triangles))}
+    yield {"hull.gltf": gltf(triangles)}
+    text, buffer = document(triangles, "hull.bin")
+    yield {"hull.gltf": json.dumps(text).encode(), "hull.bin": buffer}
+
+
+def _drawn(file: str) -> str:
+    return f'<visual><geometry><mesh filename="{file}"/></geometry></visual>'
 
 
 def flip_bits(data: bytes, rng: np.random.Generator) -> bytes:
@@ -129,7 +150,8 @@ def damaged(count: int, rng: np.random.Generator) -> list[tuple[str, bytes]]:
     for number in range(count):
         original = files[number % len(files)]
         is_text = original.startswith(b"<")
-        kinds = (*IN_TEXT, *ANYWHERE) if is_text else (*ANYWHERE, _inside)
+        # Most damage to a zip itself makes it unreadable, whatever is in it.
+        kinds = (*IN_TEXT, *ANYWHERE) if is_text else (*ANYWHERE, *[_inside] * 6)
         damage = kinds[int(rng.integers(len(kinds)))]
         files_with_damage.append(
             (f"{damage.__name__} of file {number % len(files)}", damage(original, rng))
@@ -141,7 +163,10 @@ def _inside(data: bytes, rng: np.random.Generator) -> bytes:
     """Damage a member of a zip, so that the zip itself stays whole."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
-    name = list(members)[int(rng.integers(len(members)))]
-    kinds = (*IN_TEXT, *ANYWHERE) if members[name].startswith(b"<") else ANYWHERE
+    names = list(members)
+    meshes = [name for name in names if not name.endswith((".xml", ".urdf", ".xacro"))]
+    name = str(rng.choice([*names, *meshes]))
+    is_text = members[name].startswith((b"<", b"{", b"v ", b"solid"))
+    kinds = (*IN_TEXT, *ANYWHERE) if is_text else ANYWHERE
     members[name] = kinds[int(rng.integers(len(kinds)))](members[name], rng)
     return zipped(members)
