@@ -152,6 +152,16 @@ class Child:
             return 0
         return pages * os.sysconf("SC_PAGE_SIZE")
 
+    def processor_s(self) -> float:
+        """Return the time that processors have spent on the process [s]; Linux only, else 0."""
+        try:
+            fields = Path(f"/proc/{self.pid}/stat").read_text(encoding="ascii", errors="replace")
+        except OSError:  # it has exited, or this is not Linux
+            return 0.0
+        # After the name, which is in brackets and may have blanks.
+        user, system = fields.rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
     def kill(self) -> None:
         """Kill the process and its group by SIGKILL: at once, or as soon as it starts."""
         self.is_killed = True

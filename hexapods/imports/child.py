@@ -34,6 +34,8 @@ _MAX_ERROR = 1000
 _START_S = 60.0
 """Time in which the child imports what it needs, where it is no fork of a process that has."""
 _CHECK_EVERY_S = 0.05
+_MOST_OF_TIME = 0.9
+"""Of the processor's time, after which a file takes too long, and not the machine."""
 _OPEN_FILES = 64
 _READY = b"ready"
 _TURNS = threading.BoundedSemaphore(2)
@@ -42,7 +44,10 @@ _logger = logging.getLogger(__name__)
 
 
 class NotRead(HexapodError):
-    """No process could be started that reads the file; the file itself may be valid."""
+    """No process could read the file: none could be started, or it got hardly any time.
+
+    The file itself may be valid.
+    """
 
 
 @dataclass(frozen=True)
@@ -171,12 +176,19 @@ def _wait(child: Child, limits: ReadingLimits) -> None:
 
     Raises:
         DamagedFile: if it does not in this time, or takes too much memory.
+        NotRead: if the machine gave it hardly any of its time.
         EOFError: if it has ended.
     """
     deadline_s = time.monotonic() + limits.clock_seconds
-    at_start = child.memory_bytes()
+    at_start, began_s = child.memory_bytes(), child.processor_s()
     while not child.wait(_CHECK_EVERY_S):
         if time.monotonic() > deadline_s:
+            used_s = child.processor_s() - began_s
+            if sys.platform == "linux" and used_s < _MOST_OF_TIME * limits.seconds:
+                raise NotRead(
+                    f"the machine is busy: within {limits.clock_seconds:g} s it spent only "
+                    f"{used_s:.1f} s on reading the file; try again"
+                )
             raise DamagedFile(_too_long(limits.clock_seconds))
         if child.memory_bytes() - at_start > limits.memory_bytes:
             raise DamagedFile(_too_much_memory(limits.memory_bytes))
@@ -194,11 +206,11 @@ def _why_it_ended(code: int | None, limits: ReadingLimits) -> str:
 
 
 def _too_long(seconds: float) -> str:
-    return f"reading it takes longer than {seconds:g} s: simplify its meshes"
+    return f"reading it takes longer than {seconds:g} s: simplify it, above all its meshes"
 
 
 def _too_much_memory(most_bytes: int) -> str:
-    return f"reading it takes more than {most_bytes >> 20} MB: simplify its meshes"
+    return f"reading it takes more than {most_bytes >> 20} MB: simplify it, above all its meshes"
 
 
 def _reading(answer: bytes) -> RobotReading:
