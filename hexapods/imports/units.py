@@ -142,12 +142,15 @@ def read_limits(
 ) -> None:
     """Read the limits of hinges in degrees, if a person says so or they can be nothing else.
 
+    Limits of which the lower is above the upper, which MuJoCo takes for none, are exchanged.
+
     Args:
         name_of: returns the name of a joint.
         model: the model, whose limits are changed.
         choices: what a person decided.
         notes: gets the guess.
     """
+    _exchange_limits(name_of, model, notes)
     hinges = np.flatnonzero((model.jnt_type == _HINGE) & (model.jnt_limited != 0))
     widest = np.abs(model.jnt_range[hinges]).max(axis=1)
     beyond = hinges[widest > MAX_ANGLE_RAD]
@@ -175,3 +178,21 @@ def read_limits(
             joints,
             Choices(angle_unit="deg"),
         )
+
+
+def _exchange_limits(name_of: Callable[[int], str], model: mujoco.MjModel, notes: Notes) -> None:
+    """Exchange limits of hinges of which the lower is above the upper."""
+    reversed_limits = (model.jnt_type == _HINGE) & (model.jnt_range[:, 0] > model.jnt_range[:, 1])
+    hinges = np.flatnonzero(reversed_limits).tolist()
+    if not hinges:
+        return
+    names = [name_of(joint) for joint in hinges]
+    low, high = model.jnt_range[hinges[0]]
+    model.jnt_range[hinges] = model.jnt_range[hinges][:, ::-1]
+    model.jnt_limited[hinges] = True
+    notes.repair(
+        "joints",
+        f"lower limits above upper ones were exchanged, such as {low:.4g} and {high:.4g} of "
+        f"{quoted(names[0])}",
+        names,
+    )

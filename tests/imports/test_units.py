@@ -226,3 +226,13 @@ def test_masses_by_density_of_a_large_robot_are_refused_with_a_scale() -> None:
     with pytest.raises(InvalidInput, match=r"body trunk weighs 6,\d{3} kg.* `scale` reads"):
         read(large)
     assert read(large, choices=Choices(scale=0.1)).mass_kg < 20
+
+
+def test_limits_are_exchanged_where_the_lower_is_above_the_upper() -> None:
+    upside_down = '<limit lower="1.5" upper="-1.2" effort="{effort}" velocity="5"/>'
+    robot = read(bug(limit=upside_down))
+
+    assert robot.model.joints_of(1)[1].limits_rad == (-1.2, 1.5)
+    note = about(robot, "lower limits above upper ones were exchanged, such as 1.5 and -1.2 of")
+    assert len(note.parts) == 18
+    assert not any("have no limits" in text for text in robot.guesses)
