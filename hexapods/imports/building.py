@@ -173,7 +173,7 @@ class _Builder:
         meshes = find_meshes(self._posed, origins, self._notes)
         model = self._model(links, masses, servos, meshes, home)
         gait = find_gait(self._posed.mounts()[:, :2], self._choices, self._notes)
-        tell_of_balance(model, gait, self._notes)
+        tell_of_balance(model, gait, heights, self._notes)
         return ImportedRobot(
             model=model,
             name=self._origin.name,

@@ -7,7 +7,7 @@ from hexapods.imports.balance import center_of_mass_m
 from hexapods.imports.choices import Choices
 from hexapods.imports.imported import ImportedRobot
 from hexapods.imports.notes import Note
-from tests.imports.robots import HOME, SIX, bug, dog, read
+from tests.imports.robots import FOUR, HOME, SIX, bug, dog, read
 from tests.imports.same_motion import feet_and_center
 
 
@@ -63,3 +63,17 @@ def test_legs_of_one_side_that_swing_together_topple_a_hexapod() -> None:
     assert "better groups are 1 3 5; 2 4 6" in note.text
     assert note.offer is not None
     assert toppling(read(bug(), choices=note.offer)) == []
+
+
+def test_a_narrow_robot_is_offered_to_stand_lower() -> None:
+    narrow = {leg: (x, 0.4 * y) for leg, (x, y) in FOUR.items()}
+    text = dog(narrow, keyframes={"home": HOME})
+    robot = read(text)
+
+    (note,) = [note for note in robot.notes if "it may topple in this gait" in note.text]
+    assert note.offer is not None
+    assert note.offer.body_height_m is not None
+    assert note.offer.body_height_m < robot.body_height_m
+    lower = read(text, choices=note.offer)
+    assert lower.body_height_m == pytest.approx(note.offer.body_height_m, abs=1e-3)
+    assert not any("may topple" in text for text in lower.guesses)
