@@ -172,9 +172,29 @@ class _Documents:
         Raises:
             DamagedFile: if there is none, with the reason for the document nearest to the top.
         """
-        plain, whole = list[str](), list[str]()
-        robots, damaged, problems, total = list[_Robot](), list[str](), list[str](), 0
-        elements = 0
+        plain, whole, damaged = self._sorted_out(paths)
+        robots, problems = list[_Robot](), list[str]()
+        for path in [*plain, *self._tops_first(whole)[:_MAX_EXPANDED]]:
+            if path in self._part_of(robots):
+                continue
+            try:
+                robots.append(self.robot(path))
+            except DamagedFile as error:
+                problems.append(str(error))
+        best = sorted(robots, key=lambda robot: robot.rank)
+        joints = best[0].joints if best else 0
+        if joints < _LEAST_JOINTS and problems:
+            raise DamagedFile(problems[0])
+        if joints == 0 and damaged:
+            raise DamagedFile(damaged[0])
+        if not best:
+            raise self._without_robot()
+        return best
+
+    def _sorted_out(self, paths: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
+        """Return plain documents, those with macros or includes, and why others are none."""
+        plain, whole, damaged = list[str](), list[str](), list[str]()
+        total, elements = 0, 0
         for path in sorted(paths, key=lambda path: (path.count("/"), len(path)))[:_MAX_DOCUMENTS]:
             total += self._upload.size(path)
             if total > _MAX_DOCUMENTS_BYTES or elements > _MAX_ALL_ELEMENTS:
@@ -188,19 +208,7 @@ class _Documents:
             if root.tag in _ROOTS:
                 is_plain = not is_xacro(root) and next(root.all("include"), None) is None
                 (plain if is_plain else whole).append(path)
-        for path in [*plain, *self._tops_first(whole)[:_MAX_EXPANDED]]:
-            if path in self._part_of(robots):
-                continue
-            try:
-                robots.append(self.robot(path))
-            except DamagedFile as error:
-                problems.append(str(error))
-        best = sorted(robots, key=lambda robot: robot.rank)
-        if problems and (not best or best[0].joints < _LEAST_JOINTS):
-            raise DamagedFile(problems[0])
-        if not best:
-            raise DamagedFile(damaged[0]) if damaged else self._without_robot()
-        return best
+        return plain, whole, damaged
 
     def _part_of(self, robots: Sequence[_Robot]) -> set[str]:
         """Return the documents that are only a part of a robot with macros."""

@@ -152,3 +152,10 @@ def test_a_folder_with_a_small_robot_and_one_that_cannot_be_read_tells_of_that()
     with pytest.raises(DamagedFile, match="there is no macro 'leg'"):
         read(zipped(files), "robot.zip")
     assert mentions(read(zipped({**files, "bug.urdf": bug()}), "robot.zip").guesses, "gripper.urdf")
+
+
+def test_of_documents_of_which_the_one_with_the_bodies_is_damaged_that_is_told() -> None:
+    files = {"dog/bodies.xml": BODIES[:-20], "dog/sections.xml": SECTIONS}
+
+    with pytest.raises(DamagedFile, match=r"bodies\.xml is no whole XML document"):
+        read(zipped(files), "dog.zip")
