@@ -102,17 +102,19 @@ def _remove(spec: mujoco.MjSpec, geom: mujoco.MjsGeom) -> None:
     if not (from_geoms and math.isfinite(kg) and kg > 0):
         return
     if not at_m.any():
-        at_m = _middle(body)
-    if not list(body.geoms) and not body.explicitinertial:
+        at_m = _middle(spec, body)
+    # Lists of a body raise the error of a compilation that failed; those of the model do not.
+    has_shapes = any(other.parent.name == body.name for other in spec.geoms)
+    if not has_shapes and not body.explicitinertial:
         _give_mass(body, kg, at_m)
         return
     names = {other.name for other in spec.bodies}
     _give_mass(body.add_body(name=next(_free_names(f"mass of {body.name}", names))), kg, at_m)
 
 
-def _middle(body: mujoco.MjsBody) -> FloatArray:
+def _middle(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> FloatArray:
     """Return the middle between the origin of a body and those of its children, in its frame."""
-    children = [np.array(child.pos) for child in body.bodies]
+    children = [np.array(child.pos) for child in spec.bodies[1:] if child.parent.name == body.name]
     return np.mean(children, axis=0) / 2 if children else np.zeros(3)
 
 

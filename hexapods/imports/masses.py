@@ -16,7 +16,7 @@ from hexapods.imports.posed_robot import PosedRobot
 _DENSITY = 500.0
 """Density of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""
 _NO_MASS_KG = 1e-5
-_PLACEHOLDER_KG, _PLACEHOLDER_SHARE = 0.01, 0.02
+_PLACEHOLDER_KG, _PLACEHOLDER_SHARE = 0.01, 0.06
 """Placeholders weigh less, and less than this share of what their shapes would."""
 _REAL_KG, _UNLIKELY_RATIO = 0.02, 10.0
 """Placeholders are not worth so much more than other links that weigh more than this."""
@@ -81,10 +81,7 @@ def find_masses(
         for joint in weighed
         if masses[joint].kg < _PLACEHOLDER_KG
     }
-    expected_kg = {
-        joint: mass.kg if mass is not None else _rod_kg(ends[joint])
-        for joint, mass in by_shapes.items()
-    }
+    expected_kg = {joint: _expected_kg(posed, joint, ends[joint]) for joint in by_shapes}
     placeholders = _placeholders({joint: masses[joint].kg for joint in by_shapes}, expected_kg)
     other_kg = ordered_sum(masses[joint].kg for joint in weighed if joint not in placeholders)
     missing_kg = ordered_sum(expected_kg[joint] for joint in placeholders)
@@ -145,10 +142,23 @@ def _placeholders(
     return light if distinct <= max(3, len(light) // 4) else []
 
 
-def _rod_kg(ends: FloatArray) -> float:
-    """Return the mass of a rod between two points, (2, 3)."""
+def _expected_kg(posed: PosedRobot, joint: int | None, ends: FloatArray) -> float:
+    """Return what a link would weigh by its shapes, or as a rod between its ends, (2, 3).
+
+    Boxes have the axes of each shape, since those around a slanted rod are nearly empty.
+    """
+    geoms = posed.geoms_of(posed.bodies_of(joint))
+    colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
+    volumes = [_volume(posed.own_surface(geom)[0]) for geom in colliding or geoms]
+    if sum(volumes) > 0:
+        return 0.5 * _DENSITY * ordered_sum(volumes)
     length_m = float(np.linalg.norm(ends[1] - ends[0]))
     return _DENSITY * length_m * (_ROD_WIDTH * length_m) ** 2
+
+
+def _volume(vertices: FloatArray) -> float:
+    """Return the volume of the box around points, (n, 3) [m³]."""
+    return float(np.prod(np.ptp(vertices, axis=0))) if len(vertices) else 0.0
 
 
 def _tell(without: Sequence[str], placeholders: Sequence[str], notes: Notes) -> None:

@@ -59,6 +59,7 @@ def clean_urdf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
         attributes = _ATTRIBUTES.get(parent.tag, frozenset())
         parent.attributes = {n: v for n, v in parent.attributes.items() if n in attributes}
     check_kept(root)
+    _drop_repeated(root, notes)
     _keep_first(root, notes)
     for element in [root, *root.all()]:
         check_numbers(element, _TEXTS)
@@ -95,12 +96,33 @@ def _tell_of_mimics(root: Element, notes: Notes) -> None:
         )
 
 
+def _drop_repeated(root: Element, notes: Notes) -> None:
+    """Remove links of the same name as one before, and joints that are also of the same child."""
+    kept: list[Element] = []
+    repeated: list[Element] = []
+    seen: set[tuple[str, ...]] = set()
+    for child in root:
+        name = child.attributes.get("name", "")
+        key = (child.tag, name, _link_at(child, "child") if child.tag == "joint" else "")
+        (repeated if name and key in seen else kept).append(child)
+        seen.add(key)
+    root.children = kept
+    if repeated:
+        names = [child.attributes["name"] for child in repeated]
+        notes.repair(
+            "file",
+            f"links and joints are there twice, the first count: {listed(names)}",
+            parts=list(dict.fromkeys(names))[:_MAX_TOLD],
+        )
+
+
 def _keep_first(root: Element, notes: Notes) -> None:
     """Remove elements and numbers that are more than URDF has: the first count."""
     places, links = [], []
     for top in root:
         for parent in [top, *top.all()]:
             kept = _first_of_each(parent)
+            _repeat_scale(parent)
             if len(kept) < len(parent.children) or _cut_numbers(parent):
                 places.append(f"{parent.place} of {top.place}" if parent is not top else top.place)
                 links.append(top.attributes.get("name", ""))
@@ -124,6 +146,13 @@ def _first_of_each(parent: Element) -> list[Element]:
             kept.append(child)
         tags.add(tag)
     return kept
+
+
+def _repeat_scale(element: Element) -> None:
+    """Write the one number of a scale, which some programs read so, as three."""
+    words = element.attributes.get("scale", "").split()
+    if len(words) == 1:
+        element.attributes["scale"] = " ".join(words * 3)
 
 
 def _cut_numbers(element: Element) -> bool:

@@ -82,6 +82,26 @@ def test_what_mujoco_refuses_of_a_mesh_is_told_as_well() -> None:
     assert robot.model.links[0].mesh == read(dog()).model.links[0].mesh
 
 
+def test_masses_of_meshes_that_mujoco_refuses_stay() -> None:
+    line = BOX * [1, 0, 0]
+    pack = '<body name="pack"><geom type="mesh" mesh="m" mass="0.5"/></body>'
+    text = dog(on_torso=pack, sections='<asset><mesh name="m" file="m.stl"/></asset>')
+
+    robot = read(zipped({"dog.xml": text, "m.stl": stl(line)}))
+
+    assert robot.mass_kg == pytest.approx(8.9)
+
+
+def test_a_scale_of_one_number_is_that_of_all_axes() -> None:
+    content = stl(BOX)
+    three = bug(torso=MESH.format(file="hull.stl"))
+    one = three.replace('scale="0.5 0.5 0.5"', 'scale="0.5"')
+
+    robots = [read(zipped({"bug.urdf": text, "hull.stl": content})) for text in (three, one)]
+
+    assert robots[0].model == robots[1].model
+
+
 def test_bytes_after_the_last_triangle_are_ignored_and_told() -> None:
     robot = drawn_as("hull.stl", stl(BOX) + b"\0" * 7)
 

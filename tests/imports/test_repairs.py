@@ -140,6 +140,16 @@ class TestPlaceholderMasses:
         assert robot.mass_kg == pytest.approx(5.2, rel=0.01)
         assert not mentions(robot.guesses, "placeholders")
 
+    def test_slanted_rods_of_real_masses_stay(self) -> None:
+        rod = (
+            '<collision><origin rpy="0.8 0.8 0.8"/><geometry>'
+            '<box size="0.2 0.005 0.005"/></geometry></collision>'
+        )
+
+        robot = read(bug(inertial=INERTIAL.replace('"0.1"', '"0.0075"') + rod))
+
+        assert robot.mass_kg == pytest.approx(1.5 + 18 * 0.0075)
+
     def test_light_links_of_real_masses_stay(self) -> None:
         robot = read(bug(inertial=INERTIAL.replace('"0.1"', '"0.004"')))
 
@@ -167,6 +177,17 @@ class TestLeftOutElements:
 
         assert robot.mass_kg == pytest.approx(3.4)
         assert note_with(robot, "the first count").parts == ("coxa_lf", "femur_lf", "spare", "j")
+
+    def test_of_links_and_joints_that_are_there_twice_the_first_count(self) -> None:
+        again = link("femur_lf", INERTIAL.replace("0.1", "9")) + (
+            '<joint name="j_femur_lf" type="fixed"><parent link="coxa_lf"/>'
+            '<child link="femur_lf"/></joint>'
+        )
+
+        robot = read(bug(more=again))
+
+        assert note_with(robot, "are there twice").parts == ("femur_lf", "j_femur_lf")
+        assert robot.model == read(bug()).model
 
     def test_two_joints_of_one_name_are_refused_as_by_mujoco(self) -> None:
         with pytest.raises(InvalidInput, match=r"MuJoCo refuses the file .*repeated name"):

@@ -247,7 +247,8 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
     [
         ("<robot/>", "the URDF has no <link>"),
         ('<robot><link name="${prefix}base"/></robot>', "in line 1: 'prefix' is not defined"),
-        ('<robot><link name="a"/><link name="a"/></robot>', "each link needs a name of its own"),
+        ('<robot><link name="a"/><link/></robot>', "each link needs a name of its own"),
+        (bug().replace('name="j_coxa_lf"', 'name="j_coxa_rf"'), "each joint needs a name of its"),
         ('<robot><link name="a"/><link name="b"/></robot>', "2 have no parent: a, b"),
         (bug().replace('child link="coxa_lf"', 'child link="leg"'), "its child is no link: 'leg'"),
         (bug().replace('type="revolute"', 'type="magic"', 1), "its type must be one of revolute"),
