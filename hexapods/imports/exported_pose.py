@@ -19,7 +19,7 @@ class ExportedPose:
     Attributes:
         keeps_frame: whether the torso's frame is the body frame, and the feet are in the order of
             the legs.
-        home_rad: angles of joints in the stance, by their names; empty if a keyframe has them.
+        home_rad: angles of joints in the stance, by their names.
     """
 
     keeps_frame: bool = False

@@ -6,7 +6,6 @@ other programs have neither.
 """
 
 import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,7 +15,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GaitSpec, read_gait
 from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.robot import RANGES
-from hexapods.domain.robot_model import ModelJoint, ModelLink, RobotModel
+from hexapods.domain.robot_model import MAX_ANGLE_RAD, ModelJoint, ModelLink, RobotModel
 from hexapods.imports.choices import Choices
 from hexapods.imports.exported_pose import HOME_KEY, ExportedPose
 from hexapods.imports.imported import ImportedRobot
@@ -26,6 +25,8 @@ PREFIX = "hexapods_"
 """Begins the names of settings in MJCF."""
 _ELEMENT = "hexapods"
 _FRAME_FORWARD_DEG = 90.0
+_FREE = 7
+"""Numbers of the torso in `qpos`."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class ExportedSettings:
         gait: which legs move together; None to find one.
         numbers: values of fields in `ModelRobot.changeable`.
         servos: the servos, by the names of their joints.
-        home_rad: angles of the joints with which it stands; empty if a keyframe has them.
+        home_rad: angles of the joints with which it stands.
     """
 
     feet: tuple[str, ...]
@@ -109,6 +110,9 @@ class ExportedSettings:
             joint = replace(joint, name=name.removeprefix(f"leg{leg}_"))
         if servo is None:
             return joint
+        if choices.keyframe is None and choices.home_rad is None and choices.body_height_m is None:
+            # Not moved to level the feet: they stood like this.
+            joint = replace(joint, home_rad=self.home_rad.get(name, joint.home_rad))
         values = {
             "servo_kp": (choices.servo_kp, servo.kp),
             "servo_kv": (choices.servo_kv, servo.kv),
@@ -137,7 +141,7 @@ def read_exported_settings(root: Element) -> ExportedSettings | None:
                 if name in values and name in RANGES and not name.startswith("servo_")
             },
             dict(_servos_of_mjcf(root) if is_mjcf else _servos_of_urdf(root)),
-            {} if is_mjcf else _home(root),
+            _home_of_mjcf(root) if is_mjcf else _home_of_urdf(root),
         )
     except (ValueError, KeyError, RecursionError, InvalidInput):
         return None
@@ -186,9 +190,22 @@ def _servo_elements(root: Element) -> Iterator[tuple[str, Mapping[str, str]]]:
             yield servo.attributes["joint"], servo.attributes
 
 
-def _home(root: Element) -> dict[str, float]:
-    turn = 2 * math.pi
-    return {name: _number(servo["home"], (-turn, turn)) for name, servo in _servo_elements(root)}
+def _home_of_urdf(root: Element) -> dict[str, float]:
+    return {name: _angle(servo["home"]) for name, servo in _servo_elements(root)}
+
+
+def _home_of_mjcf(root: Element) -> dict[str, float]:
+    """Return the angles in the keyframe; none if it is of other joints than those in the file."""
+    joints = [joint.attributes.get("name", "") for joint in root.all("joint")]
+    for key in root.all("key"):
+        qpos = key.attributes.get("qpos", "").split()
+        if key.attributes.get("name") == HOME_KEY and len(qpos) == _FREE + len(joints):
+            return dict(zip(joints, map(_angle, qpos[_FREE:]), strict=True))
+    return {}
+
+
+def _angle(text: str) -> float:
+    return _number(text, (-MAX_ANGLE_RAD, MAX_ANGLE_RAD))
 
 
 def _servos_of_mjcf(root: Element) -> Iterator[tuple[str, ServoSettings]]:

@@ -72,7 +72,8 @@ def find_masses(
     Raises:
         InvalidInput: if no link has a mass or a shape.
     """
-    masses = {joint: mass_of(posed, posed.bodies_of(joint)) for joint in links}
+    more = 0.0 if are_whole else _LEAST_INERTIA
+    masses = {joint: mass_of(posed, posed.bodies_of(joint), more) for joint in links}
     # A body with two joints is two links, the first of which has nothing.
     between = {joint for joint in links if joint is not None and not posed.bodies_of(joint)}
     weighed = [] if are_whole else [joint for joint in links if joint not in between]
@@ -177,8 +178,14 @@ def _tell(without: Sequence[str], placeholders: Sequence[str], notes: Notes) -> 
         )
 
 
-def mass_of(posed: PosedRobot, bodies: Sequence[int]) -> Mass:
-    """Return the mass of some bodies together, as the file gives it."""
+def mass_of(posed: PosedRobot, bodies: Sequence[int], more_inertia: float = 0.0) -> Mass:
+    """Return the mass of some bodies together, as the file gives it.
+
+    Args:
+        posed: the robot.
+        bodies: the bodies.
+        more_inertia: is added to the inertia about each axis, which may be 0 in a file [kg·m²].
+    """
     masses = posed.compiled.model.body_mass
     body_masses = [
         Mass(float(masses[body]), posed.center_of_mass(body), posed.inertia(body))
@@ -193,7 +200,7 @@ def mass_of(posed: PosedRobot, bodies: Sequence[int]) -> Mass:
     for mass in body_masses:
         out = mass.center_m - center
         inertia += mass.inertia + mass.kg * (out @ out * np.eye(3) - np.outer(out, out))
-    return Mass(kg, center, inertia + _LEAST_INERTIA * np.eye(3))
+    return Mass(kg, center, inertia + more_inertia * np.eye(3))
 
 
 def _of_shapes(posed: PosedRobot, geoms: Sequence[int]) -> Mass | None:

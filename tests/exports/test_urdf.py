@@ -121,6 +121,12 @@ def test_it_is_read_back_as_the_robot_that_moves_alike(name: str, ending: str) -
         assert [joint.friction_nm for leg in (1, 2) for joint in again.model.joints_of(leg)] == [
             joint.friction_nm for leg in (1, 2) for joint in robot.model.joints_of(leg)
         ]
+    if isinstance(robot, ModelRobot):
+        before, after = (
+            [link.joint.home_rad for link in body.model.links if link.joint]
+            for body in (robot, again)
+        )
+        assert after == pytest.approx(before, abs=1e-12)
     for joint in legs_of(robot).joints:
         assert again.servo_of(joint.leg, joint.name) == robot.servo_of(joint.leg, joint.name)
     side_m = usual_grid_side_m(robot, gait)
