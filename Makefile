@@ -96,6 +96,11 @@ browser: $(DEV_STAMP)
 pythons: $(DEV_STAMP) ## Compare results to the last bit in every other Python that is here
 	$(BIN)/python -m tests.other_pythons
 
+# In no tier: it downloads half a gigabyte.
+.PHONY: readers
+readers: $(DEV_STAMP) ## Open exported robots in MuJoCo 3.2, dm_control, yourdfpy and WebAssembly
+	$(BIN)/python -m tests.other_readers
+
 .PHONY: test-page
 test-page: check-page-types ## Check the page's JavaScript: linter, types, unit tests
 	$(BIN)/node node_modules/eslint/bin/eslint.js .
