@@ -20,6 +20,8 @@
   /** How much of the picture within the margins is filled. */
   const FILLED = 0.96;
   const CORNERS = 24;
+  /** Of a bisection. */
+  const STEPS = 40;
   const SAME_PX = 0.25;
   const STEP_LIMIT_S = 0.1;
 
@@ -61,24 +63,37 @@
       }));
   };
 
-  /** How far up the camera must be moved, so that the circles are in view from a distance; null if they are not. */
-  const shiftAt = (distance_m, { wide, high, lower }) => {
+  /** How far up the camera is to be moved at a distance, so that as much is free above the circles as below. */
+  const shiftAt = (distance_m, { lower }) => {
+    const points = seenFrom(distance_m);
+    const height = (shift, most) => most(...points.map(({ up, depth }) => (up - shift) / depth));
+    let [low, high] = [-distance_m, distance_m];
+    for (let step = 0; step < STEPS; step += 1) {
+      const middle = (low + high) / 2;
+      if (height(middle, Math.max) + height(middle, Math.min) + 2 * lower > 0) low = middle;
+      else high = middle;
+    }
+    return low;
+  };
+
+  /** Whether the circles are in view from a distance, with a camera that is moved up where that helps. */
+  const fits = (distance_m, { wide, high, lower }) => {
     let [least, most] = [-Infinity, Infinity];
     for (const { side, up, depth } of seenFrom(distance_m)) {
-      if (depth <= 0 || Math.abs(side) > depth * wide) return null;
+      if (depth <= 0 || Math.abs(side) > depth * wide) return false;
       least = Math.max(least, up - depth * (high - lower));
       most = Math.min(most, up + depth * (high + lower));
     }
-    return least <= most ? (least + most) / 2 : null;
+    return least <= most;
   };
 
   /** From how near the circles are in view. */
   const distanceToFit = (limits) => {
     let [near, far] = [0, 100 * Math.max(...inspection.rims_m.flat())];
-    for (let step = 0; step < 40; step += 1) {
+    for (let step = 0; step < STEPS; step += 1) {
       const middle = (near + far) / 2;
-      if (shiftAt(middle, limits) === null) near = middle;
-      else far = middle;
+      if (fits(middle, limits)) far = middle;
+      else near = middle;
     }
     return far;
   };
@@ -180,7 +195,9 @@
 
   const keyOf = ({ centre_m, rims_m, margins_px }) => {
     const { clientWidth, clientHeight } = viewer().canvas;
-    return JSON.stringify([centre_m, rims_m, margins_px, clientWidth, clientHeight, viewer().camera.fov]);
+    // The scene is turned upright a little after it is drawn.
+    const upright = toThree().elements;
+    return JSON.stringify([upright, centre_m, rims_m, margins_px, clientWidth, clientHeight, viewer().camera.fov]);
   };
 
   const step = (now) => {
