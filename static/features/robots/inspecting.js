@@ -102,12 +102,12 @@ export function followInspecting() {
   isTurning.value = !matchMedia("(prefers-reduced-motion: reduce)").matches;
   [shownNote.value, draggedAngle.value, turned_deg.value] = [null, null, 0];
   clickMode.value = "groups";
-  let before = /** @type {{ document: string | undefined, forward: number } | null} */ (null);
+  let before = /** @type {{ document: string | null, forward: number } | null} */ (null);
   const stops = [
     // The scene turns with another forward; the camera goes along, so that the robot stays as it is seen.
     effect(() => {
       const read = reading.value;
-      const now = read?.robot ? { document: read.documents?.[0], forward: read.robot.forward_deg } : null;
+      const now = read?.robot ? { document: read.document, forward: read.robot.forward_deg } : null;
       untracked(() => {
         if (before && now && now.document === before.document) turned_deg.value -= inTurn(now.forward - before.forward);
         before = now ?? before;

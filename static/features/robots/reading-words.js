@@ -32,5 +32,5 @@ export const topicTitle = (topic) => TOPICS[topic] ?? topic;
 
 /** What is missing of a robot that cannot be stored, and what to do. @param {Reading} reading */
 export const missingInWords = ({ feet }) => (feet.length
-  ? `Choose its feet: click links in the picture, or choose from ${feet.length} below.`
-  : `Nothing in it could be a foot.`);
+  ? "Choose its feet, in the picture or below, or correct its units."
+  : "Nothing in it could be a foot.");

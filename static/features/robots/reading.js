@@ -41,9 +41,9 @@ import { chooseStored, distinct, refresh } from "./stored-robots.js";
 /** A foot of a leg; where no legs were found, what could be one, of leg 0. */
 /** @typedef {{ name: string, leg: number, at_m: number[], radius_m: number }} ReadingFoot */
 /**
- * `documents`: paths in the zip of those that could be the robot, of which the first is read.
+ * `document`: path in the zip of what was read; `documents`: of all that could be the robot.
  * @typedef {{
- *   id: string, file: string, documents: string[], choices: ReadingChoices,
+ *   id: string, file: string, document: string | null, documents: string[], choices: ReadingChoices,
  *   problem: string | null, robot: FoundRobot | null, feet: ReadingFoot[], arguments: Record<string, string>,
  *   notes: ReadingNote[], parts: ReadingPart[], scene: string,
  * }} Reading

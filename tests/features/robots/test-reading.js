@@ -28,7 +28,7 @@ const PARTS = [
 const FEET = [{ name: "foot1", leg: 1, at_m: [0.2, 0.1, 0.01], radius_m: 0.01 }];
 /** @type {import("../../../static/features/robots/reading.js").Reading} */
 const READING = {
-  id: "a", file: "rex.urdf", documents: [], choices: {}, problem: null, robot: ROBOT,
+  id: "a", file: "rex.urdf", document: null, documents: [], choices: {}, problem: null, robot: ROBOT,
   feet: FEET, arguments: {}, parts: PARTS, scene: "",
   notes: [
     { kind: "repair", topic: "meshes", text: "A mesh was left out.", parts: ["torso"], offer: null },

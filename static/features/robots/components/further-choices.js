@@ -22,7 +22,7 @@ const numberIn = (text) => (text.trim() ? Number(text.trim().replace("−", "-")
 
 /** @param {{ read: Reading }} props */
 export const FurtherChoices = ({ read }) => html`
-  ${Object.keys(read.arguments ?? {}).length > 0 && html`<${Arguments} defaults=${read.arguments} />`}
+  ${Object.keys(read.arguments).length > 0 && html`<${Arguments} defaults=${read.arguments} />`}
   <details class="reading-further" open=${!read.robot || undefined}>
     <summary>Units and servos</summary>
     <div class="reading-fields">

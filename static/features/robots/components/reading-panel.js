@@ -51,7 +51,7 @@ const Found = ({ read }) => html`
     <p>${missingInWords(read)}</p>
   `}
   ${decisionProblem.value && html`<p class="mistake" role="alert">${decisionProblem.value}</p>`}
-  ${(read.documents ?? []).length > 1 && html`<${Documents} read=${read} />`}
+  ${read.documents.length > 1 && html`<${Documents} read=${read} />`}
   ${read.robot && html`<${Shape} robot=${read.robot} />`}
   ${(clickMode.value === "feet" || !read.robot) && html`
     <${FeetList} feet=${possibleFeet.value.map(({ name }) => name)} />
@@ -68,7 +68,7 @@ const Documents = ({ read }) => html`
     <select id="reading-document" onChange=${(/** @type {{ target: HTMLSelectElement }} */ { target }) =>
       decide(withDocument(target.value))}>
       ${read.documents.toSorted().map((path) => html`
-        <option key=${path} value=${path} selected=${path === read.documents[0]}>${path}</option>
+        <option key=${path} value=${path} selected=${path === read.document}>${path}</option>
       `)}
     </select>
   </div>
@@ -154,7 +154,9 @@ const FeetList = ({ feet }) => feet.length > 0 && html`
 
 /** @param {{ notes: ReadingNote[] }} props */
 function Guesses({ notes }) {
-  const guesses = notes.map((note, index) => ({ note, index })).filter(({ note }) => note.kind === "guess");
+  const isOffer = (/** @type {ReadingNote} */ { offer }) => Number(offer !== null);
+  const guesses = notes.map((note, index) => ({ note, index })).filter(({ note }) => note.kind === "guess")
+    .toSorted((a, b) => isOffer(b.note) - isOffer(a.note));
   return guesses.length > 0 && html`
     <h3>Guessed</h3>
     <ul class="reading-notes">

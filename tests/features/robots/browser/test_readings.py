@@ -141,7 +141,7 @@ def test_a_refused_robot_is_mended_by_choosing_its_feet(
     lame = re.sub(r'(<body name="R._thigh" pos="[^"]+")', r'\1 euler="0 -1.5 0"', dog(limits=False))
     panel = hand(dashboard, {"lame.xml": lame}, "paste")
     expect(panel.get_by_role("alert")).to_contain_text("Found 2 legs")
-    expect(panel.get_by_text("Choose its feet: click links in the picture")).to_be_visible()
+    expect(panel.get_by_text("Choose its feet, in the picture or below")).to_be_visible()
     for foot in ("FL", "FR", "RL", "RR"):
         panel.get_by_role("checkbox", name=foot, exact=True).check()
     told(panel, "4 legs")
@@ -308,7 +308,7 @@ def test_the_picture_is_corrected_by_pointer_and_keys(
     expect(shank).to_have_attribute("aria-pressed", "false")
     # Guesses are tags, in the order of the list; one that is clicked is shown there.
     tags = page.get_by_role("list", name="Guesses in the picture")
-    tags.get_by_role("button", name=re.compile("^Stance")).click()
+    tags.get_by_role("button", name=re.compile("^Stance It stands")).click()
     expect(panel.locator(".reading-notes .shown")).to_contain_text("Stance")
     assert overlaps(page) == []
 
