@@ -28,7 +28,7 @@ _MOST_BYTES = {".dae": 16 << 20, ".gltf": 16 << 20}
 """Numbers as text take several times as much memory."""
 _SIMPLIFIED_ABOVE = 50_000
 """Triangles of one mesh, unless it is OBJ."""
-MAX_TRIANGLES, _FEWER_TRIANGLES = 425_000, 125_000
+MAX_TRIANGLES, _FEWER_TRIANGLES = 320_000, 125_000
 """Triangles of all meshes together; of more meshes so many are left, and at most twice as many."""
 _MAX_COORDINATE = 1e9
 _LEAST_VERTICES = 4

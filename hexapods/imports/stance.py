@@ -259,26 +259,35 @@ def search(robot: RobotWithLegs) -> Angles:
     of legs that point outward are above the line from the hip to the foot, if the limits allow it
     without a loss of reach.
     """
-    stance, unreached = _most_reaching(robot, knees_up=False)
+    stance, number, unreached = _most_reaching(robot)
     if _knees_down(robot, stance):
-        other, unreached_then = _most_reaching(robot, knees_up=True)
-        if unreached_then <= unreached and not _knees_down(robot, other):
+        other = _posture(robot, number, knees_up=True)
+        if _unreached(robot, other) <= unreached and not _knees_down(robot, other):
             return other
     return stance
 
 
-def _most_reaching(robot: RobotWithLegs, *, knees_up: bool) -> tuple[Angles, int]:
-    """Return the posture from which most feet reach their boxes, and how many do not."""
-    fewest, stance = len(robot.chains) + 1, list[FloatArray]()
-    for lower in range(_POSTURES):
-        angles = _posture(robot, lower, knees_up=knees_up)
-        pairs = _pairs(robot, angles)
-        unreached = sum(is_short_of_box(chain, at_rad) for chain, at_rad in pairs)  # whole numbers
+def _most_reaching(robot: RobotWithLegs) -> tuple[Angles, int, int]:
+    """Return the stance from which most feet reach their boxes.
+
+    Returns:
+        its angles, the number of its posture, and how many feet do not reach.
+    """
+    fewest, best, stance = len(robot.chains) + 1, 0, list[FloatArray]()
+    for number in range(_POSTURES):
+        angles = _posture(robot, number, knees_up=False)
+        unreached = _unreached(robot, angles)
         if unreached < fewest:
-            fewest, stance = unreached, angles
+            fewest, best, stance = unreached, number, angles
         if not unreached:
             break
-    return stance, fewest
+    return stance, best, fewest
+
+
+def _unreached(robot: RobotWithLegs, angles: Angles) -> int:
+    """Return how many feet do not reach their boxes."""
+    pairs = _pairs(robot, angles)
+    return sum(is_short_of_box(chain, at_rad) for chain, at_rad in pairs)  # whole numbers
 
 
 def _knees_down(robot: RobotWithLegs, angles: Angles) -> bool:
@@ -366,7 +375,7 @@ def _costs(
     feet = (chain.feet(angles) - chain.anchors[0]) / length_m
     costs: FloatArray = 3 * ((feet - wanted) ** 2).sum(axis=1)
     if angles.shape[1] >= FOLLOWING_JOINTS:
-        least = np.linalg.svd(chain.jacobians(angles) / length_m, compute_uv=False)[:, 2]
+        least = np.linalg.svd(chain.slopes(angles) / length_m, compute_uv=False)[:, 2]
         costs += 4 * np.maximum(0, 0.25 - least) ** 2
     low, high = chain.limits
     margin = np.minimum(angles - low, high - angles)

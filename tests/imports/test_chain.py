@@ -33,6 +33,12 @@ def test_its_derivatives_are_those_of_its_foot(leg: LegChain) -> None:
     assert leg.jacobians(angles)[0] @ small == pytest.approx(moved[0], abs=1e-7)
 
 
+def test_slopes_are_the_same_derivatives(leg: LegChain) -> None:
+    angles = np.random.default_rng(0).uniform(-1, 1, (20, 3))
+
+    assert leg.slopes(angles) == pytest.approx(leg.jacobians(angles), abs=1e-9)
+
+
 def test_angles_are_found_again(leg: LegChain) -> None:
     rng = np.random.default_rng(0)
     start = np.array([0.0, -0.4, 1.4])
