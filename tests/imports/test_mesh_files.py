@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hexapods.domain.errors import DamagedFile
-from hexapods.imports.child import read_robot_file
+from hexapods.imports.child import ReadingLimits, read_robot_file
 from hexapods.imports.imported import ImportedRobot
 from hexapods.imports.obj import read_obj, write_obj
 from tests.imports.gltf_files import document, glb
@@ -15,6 +15,8 @@ from tests.imports.test_mjcf import mentions
 from tests.imports.test_urdf import MESH, decoded
 
 BOX = box_triangles((0.4, 0.2, 0.08))
+PATIENT = ReadingLimits(clock_seconds=300.0)
+"""On a busy machine the processor time of a reading is a small part of it."""
 WEB_PAGE = b"<!DOCTYPE html><html><body>Not Found</body></html>"
 OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
 
@@ -164,7 +166,7 @@ def test_many_meshes_are_simplified_until_they_fit_into_the_memory(count: int, c
         text = text.replace("@", shape, 1)
     files = {f"m{number}.stl": mesh for number in range(count)}
 
-    robot = read_robot_file(zipped({"bug.urdf": text, **files}))
+    robot = read_robot_file(zipped({"bug.urdf": text, **files}), limits=PATIENT)
 
     (sentence,) = (text for text in robot.repairs if "together" in text)
     numbers = [int(number.replace(",", "")) for number in re.findall(r"[\d,]*\d", sentence)]
@@ -183,6 +185,6 @@ def test_a_mesh_that_mujoco_reads_several_times_counts_as_often() -> None:
     )
     text = dog(on_torso=drawn, sections=f"<asset>{meshes}</asset>")
 
-    robot = read_robot_file(zipped({"dog.xml": text, "m.stl": stl(ball(60))}))
+    robot = read_robot_file(zipped({"dog.xml": text, "m.stl": stl(ball(60))}), limits=PATIENT)
 
     assert mentions(robot.repairs, "mesh m.stl was simplified from 43,200 to")
