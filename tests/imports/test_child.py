@@ -76,7 +76,7 @@ def test_its_sentence_comes_back() -> None:
 def test_a_file_that_takes_too_long_to_read_is_refused(temporary: Path) -> None:
     began_s = time.monotonic()
 
-    with pytest.raises(DamagedFile, match=r"longer than 0\.01 s"):
+    with pytest.raises(DamagedFile, match=r"longer than 0(\.01)? s"):
         read_robot_file(bug().encode(), limits=ReadingLimits(seconds=0, clock_seconds=0.01))
 
     assert time.monotonic() - began_s < 30
