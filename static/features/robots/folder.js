@@ -21,13 +21,16 @@ const endsWith = (path, endings) => endings.some((ending) => path.toLowerCase().
 const isSkipped = (name) => name.startsWith(".") || SKIPPED.includes(name);
 /** @param {string} path */
 const folderOf = (path) => path.slice(0, path.lastIndexOf("/") + 1);
-/** The last part of a path of any system, without `%20` and the like, in lower case. @param {string} path */
-function lastPart(path) {
-  const name = path.split(/[/\\]/).at(-1) ?? "";
+/** A name as names are compared: without regard to case, accents composed. @param {string} name */
+const plain = (name) => name.normalize("NFC").toLowerCase();
+/** The last part of a path of any system. @param {string} path */
+const lastPart = (path) => plain(path.split(/[/\\]/).at(-1) ?? "");
+/** A name without `%20` and the like. @param {string} name */
+function decoded(name) {
   try {
-    return decodeURIComponent(name).toLowerCase();
+    return plain(decodeURIComponent(name));
   } catch {
-    return name.toLowerCase();
+    return name;
   }
 }
 
@@ -44,10 +47,11 @@ class TooManyFiles extends Error {
 export function namesIn(text) {
   const [names, patterns] = [new Set(), new Set()];
   for (const piece of text.match(/[^"'<>\r\n]+/g) ?? []) {
-    for (const word of piece.includes(" ") ? [piece, ...piece.split(/\s+/)] : [piece]) {
-      if (!word.includes(".")) continue;
-      const name = lastPart(word.trim().replace(/\$\{[^}]*\}|\$\([^)]*\)/g, "*"));
-      (name.includes("*") ? patterns : names).add(name);
+    const path = piece.trim().replace(/\$\{[^}]*\}|\$\([^)]*\)/g, "*");
+    for (const word of new Set([path, ...path.split(/\s+/)])) {
+      const name = lastPart(word);
+      if (!name.includes(".") && !(name.includes("*") && word.includes("/"))) continue;
+      for (const spelling of [name, decoded(name)]) (spelling.includes("*") ? patterns : names).add(spelling);
     }
   }
   return { names, patterns };

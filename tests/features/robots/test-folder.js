@@ -47,6 +47,14 @@ test("names are the last parts of paths, and expressions in them stand for anyth
   assert.deepEqual([...patterns], ["*_e.stl"]);
 });
 
+test("names of meshes whose endings are in expressions, and accents written either way", () => {
+  const { names, patterns } = namesIn(`"meshes/\${kind}_leg\${ending}" "Fu\u0308\u00df%20links.stl" "\${plain}"`);
+
+  assert.deepEqual([...patterns], ["*_leg*"]);
+  const feet = [...names].filter((name) => name.includes("links"));
+  assert.deepEqual(feet, ["f\u00fc\u00df%20links.stl", "f\u00fc\u00df links.stl"]);
+});
+
 test("the files of a folder that was chosen lose the folder's own name", () => {
   const file = Object.defineProperty(new File([], "a.urdf"), "webkitRelativePath", { value: "rex/urdf/a.urdf" });
   assert.deepEqual(filesOfInput([file]).map(({ path }) => path), ["urdf/a.urdf"]);
