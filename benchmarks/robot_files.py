@@ -31,7 +31,7 @@ from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.child import inspect_robot_file
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import silence_mujoco
-from hexapods.imports.folder import read_robot_path
+from hexapods.imports.documents.folder import read_robot_path
 from hexapods.imports.imported import ImportedRobot
 from hexapods.imports.reading import read_in_this_process
 

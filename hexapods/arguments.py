@@ -25,7 +25,7 @@ from hexapods.domain.text import MAX_NAME, visible
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
 from hexapods.imports.child import read_robot_file
-from hexapods.imports.folder import read_robot_path
+from hexapods.imports.documents.folder import read_robot_path
 from hexapods.runs.config import SimulatorName, WalkingProblem
 from hexapods.runs.recommendation import recommend
 

@@ -15,17 +15,23 @@ from hexapods.domain.robot_model import (
 )
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
-from hexapods.imports.balance import tell_of_balance
-from hexapods.imports.chain import LegChain
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.directions import find_forward, find_gait, numbered
 from hexapods.imports.drawing import find_meshes
 from hexapods.imports.exported_pose import FOREIGN, ExportedPose
-from hexapods.imports.feet import FoundLeg
-from hexapods.imports.heights import body_height_m
 from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
-from hexapods.imports.joint_kinds import joint_kinds
+from hexapods.imports.legs.balance import tell_of_balance
+from hexapods.imports.legs.chain import LegChain
+from hexapods.imports.legs.directions import find_forward, find_gait, numbered
+from hexapods.imports.legs.feet import FoundLeg
+from hexapods.imports.legs.heights import body_height_m
+from hexapods.imports.legs.joint_kinds import joint_kinds
+from hexapods.imports.legs.stance import (
+    Angles,
+    RobotWithLegs,
+    find_stance,
+    tell_of_reach,
+)
 from hexapods.imports.link_limits import checked_model
 from hexapods.imports.masses import Mass, find_masses, mass_in_file_kg, mass_of
 from hexapods.imports.notes import Notes, quoted
@@ -39,12 +45,6 @@ from hexapods.imports.servos import (
 )
 from hexapods.imports.shapes import GroundShape, drop_touching, link_shapes, torso_shapes
 from hexapods.imports.size import check_legs, check_mass, tell_of_size
-from hexapods.imports.stance import (
-    Angles,
-    RobotWithLegs,
-    find_stance,
-    tell_of_reach,
-)
 from hexapods.imports.units import read_limits
 from hexapods.imports.upright import find_upright
 

@@ -25,8 +25,8 @@ from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import message, visible
 from hexapods.imports.choices import AS_FOUND, Choices, check_choices
+from hexapods.imports.documents.upload import MAX_UPLOAD_BYTES
 from hexapods.imports.imported import ImportedRobot, RobotReading
-from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.processes import Child, SetUp
 
 _MAX_ANSWER_BYTES = 16 << 20

@@ -7,15 +7,15 @@ import mujoco
 import numpy as np
 
 from hexapods.domain.errors import DamagedFile
+from hexapods.imports.documents.xml import Document
 from hexapods.imports.incomplete_shapes import (
     drop_shapes_of_missing_meshes,
     drop_sizeless_shapes,
     tell_of_bare_ends,
 )
-from hexapods.imports.mesh_files import MeshFiles
+from hexapods.imports.meshes.mesh_files import MeshFiles
 from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.units import rescale, rescale_keyframes, scale_meshes_in_millimetres
-from hexapods.imports.xml import Document
 
 LEAST_KG, _LEAST_INERTIA = 1e-6, 1e-9
 """Mass and inertia of moving bodies for which the file gives none."""

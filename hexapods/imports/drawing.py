@@ -9,7 +9,7 @@ from hexapods.domain.robot_model import MAX_TRIANGLES, ModelMesh
 from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.decimation import cluster
+from hexapods.imports.meshes.decimation import cluster
 from hexapods.imports.notes import Notes
 from hexapods.imports.posed_robot import PosedRobot
 from hexapods.imports.surfaces import Triangles

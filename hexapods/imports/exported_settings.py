@@ -17,9 +17,9 @@ from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.robot import RANGES
 from hexapods.domain.robot_model import MAX_ANGLE_RAD, ModelJoint, ModelLink, RobotModel
 from hexapods.imports.choices import Choices
+from hexapods.imports.documents.xml import Element
 from hexapods.imports.exported_pose import HOME_KEY, ExportedPose
 from hexapods.imports.imported import ImportedRobot
-from hexapods.imports.xml import Element
 
 PREFIX = "hexapods_"
 """Begins the names of settings in MJCF."""

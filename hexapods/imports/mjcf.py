@@ -10,10 +10,10 @@ from collections.abc import Iterable
 
 from hexapods.domain.errors import DamagedFile
 from hexapods.domain.text import counted
-from hexapods.imports.mesh_files import MeshFiles
+from hexapods.imports.documents.upload import last_part
+from hexapods.imports.documents.xml import MAX_NAME, Element, check_kept
+from hexapods.imports.meshes.mesh_files import MeshFiles
 from hexapods.imports.notes import Notes, listed, quoted
-from hexapods.imports.upload import last_part
-from hexapods.imports.xml import MAX_NAME, Element, check_kept
 
 MAX_BODIES, MAX_JOINTS, MAX_GEOMS = 300, 300, 2000
 _MAX_NUMBER = 1e12

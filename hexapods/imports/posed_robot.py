@@ -12,8 +12,8 @@ import numpy as np
 
 from hexapods.domain.types import FloatArray
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.feet import FoundLeg
-from hexapods.imports.skeleton import Skeleton
+from hexapods.imports.legs.feet import FoundLeg
+from hexapods.imports.legs.skeleton import Skeleton
 from hexapods.imports.surfaces import Triangles, kind_of, triangles_of
 
 _MAX_KEYFRAMES = 50

@@ -10,16 +10,16 @@ from hexapods.domain.text import MAX_NAME, visible
 from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled, compile_document
-from hexapods.imports.documents import RobotDocument, choose_document
+from hexapods.imports.documents.robot_document import RobotDocument, choose_document
+from hexapods.imports.documents.upload import Upload, last_part
+from hexapods.imports.documents.xml import Element, write_xml
 from hexapods.imports.exported_settings import ExportedSettings, read_exported_settings
 from hexapods.imports.imported import ImportedRobot, RobotReading
-from hexapods.imports.mesh_files import MeshFiles
+from hexapods.imports.meshes.mesh_files import MeshFiles
 from hexapods.imports.mjcf import clean_mjcf
 from hexapods.imports.notes import Notes, listed
 from hexapods.imports.sketch import sketch_robot
-from hexapods.imports.upload import Upload, last_part
 from hexapods.imports.urdf import clean_urdf
-from hexapods.imports.xml import Element, write_xml
 
 _HOME_FOLDER = re.compile(r"(?:[a-zA-Z]:)?[/\\]+(?:home|users)[/\\]+[^/\\]*[/\\]*", re.IGNORECASE)
 _NO_NAMES = ("mujoco model", "robot", "scene")

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from hexapods.domain.errors import InvalidInput
-from hexapods.imports.chain import LegChain
 from hexapods.imports.choices import Choices
-from hexapods.imports.feet import Foot
+from hexapods.imports.legs.chain import LegChain
+from hexapods.imports.legs.feet import Foot
 from hexapods.imports.notes import Notes, quoted
 
 _USUAL_RATIO = 150.0

@@ -13,10 +13,10 @@ from hexapods.domain.model_geometry import home_angles, leg_chains
 from hexapods.domain.robot_model import MIN_JOINTS, Vector
 from hexapods.domain.types import FloatArray
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.decimation import cluster
 from hexapods.imports.drawing import drawn_geoms, merged_mesh
-from hexapods.imports.feet import Foot, find_foot
 from hexapods.imports.imported import ImportedRobot, Sketch, SketchFoot, SketchPart
+from hexapods.imports.legs.feet import Foot, find_foot
+from hexapods.imports.meshes.decimation import cluster
 from hexapods.imports.posed_robot import initial_pose, rotation_to_forward
 from hexapods.imports.surfaces import Triangles, triangles_of
 

@@ -9,10 +9,10 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
 from hexapods.imports.choices import Axis, Choices
 from hexapods.imports.compiling import Compiled
-from hexapods.imports.feet import FoundLeg
+from hexapods.imports.legs.feet import FoundLeg
+from hexapods.imports.legs.skeleton import Skeleton, find_skeleton
 from hexapods.imports.notes import Notes
 from hexapods.imports.posed_robot import initial_pose
-from hexapods.imports.skeleton import Skeleton, find_skeleton
 from hexapods.imports.units import turn_upright
 
 _OTHER_UPS: Sequence[Axis] = ("y", "-y", "x", "-x", "-z")

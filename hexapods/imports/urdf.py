@@ -3,10 +3,10 @@
 from collections.abc import Collection, Mapping, Sequence
 
 from hexapods.domain.errors import DamagedFile
-from hexapods.imports.mesh_files import MeshFiles
+from hexapods.imports.documents.xml import Element, check_kept
+from hexapods.imports.meshes.mesh_files import MeshFiles
 from hexapods.imports.mjcf import MAX_BODIES, MAX_GEOMS, check_numbers
 from hexapods.imports.notes import Notes, listed, quoted
-from hexapods.imports.xml import Element, check_kept
 
 _KEPT: dict[str, frozenset[str]] = {
     "robot": frozenset({"link", "joint"}),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from hexapods.imports import stance
+from hexapods.imports.legs import stance
 
 
 @pytest.fixture(scope="package", autouse=True)

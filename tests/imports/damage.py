@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from hexapods.imports.obj import write_obj
-from tests.imports.collada_files import dae
-from tests.imports.gltf_files import document, glb, gltf
+from hexapods.imports.meshes.obj import write_obj
+from tests.imports.meshes.collada_files import dae
+from tests.imports.meshes.gltf_files import document, glb, gltf
 from tests.imports.robots import HOME, box_triangles, bug, dog, stl, text_stl, zipped
 from tests.imports.robots_in_parts import in_parts, in_xacro
 

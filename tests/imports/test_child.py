@@ -51,7 +51,7 @@ def test_the_parent_imports_no_parser_of_robots(temporary: Path) -> None:
         "from hexapods.imports.child import read_robot_file\n"
         "if __name__ == '__main__':\n"
         "    robot = read_robot_file(open(sys.argv[1], 'rb').read())\n"
-        "    parsers = ('mujoco', 'hexapods.imports.xml', 'xml.parsers.expat')\n"
+        "    parsers = ('mujoco', 'hexapods.imports.documents.xml', 'xml.parsers.expat')\n"
         "    print(len(robot.legs), *(name in sys.modules for name in parsers))\n"
     )
     file, program = temporary / "bug.urdf", temporary / "program.py"

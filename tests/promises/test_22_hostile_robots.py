@@ -30,7 +30,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.imports.child import read_robot_file
 from hexapods.imports.imported import ImportedRobot
 from tests.imports.damage import damaged
-from tests.imports.gltf_files import document, glb
+from tests.imports.meshes.gltf_files import document, glb
 from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
 from tests.promises.length import at_length
 

@@ -24,8 +24,8 @@ from hexapods.domain.support import STANDS_M, Support
 from hexapods.domain.text import MAX_NAME, check_name, visible
 from hexapods.imports.child import NotRead, read_robot_file
 from hexapods.imports.choices import AS_FOUND, Choices
+from hexapods.imports.documents.upload import last_part
 from hexapods.imports.imported import ImportedRobot
-from hexapods.imports.upload import last_part
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import preview
 

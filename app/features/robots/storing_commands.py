@@ -24,7 +24,7 @@ from hexapods.domain.records import from_json, to_json
 from hexapods.extras import needs
 from hexapods.imports.child import inspect_robot_file
 from hexapods.imports.choices import AS_FOUND, Choices
-from hexapods.imports.folder import read_robot_path
+from hexapods.imports.documents.folder import read_robot_path
 from hexapods.imports.imported import ImportedRobot, RobotReading
 from hexapods.imports.notes import Note, listed, quoted
 

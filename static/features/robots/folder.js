@@ -6,7 +6,7 @@ import { zipOf } from "./zip.js";
 /** A file of a folder: its path in it, with slashes. @typedef {{ path: string, file: File }} FolderFile */
 /** What was dropped, as far as it is read. @typedef {{ isFile: boolean, isDirectory: boolean, name: string }} Entry */
 
-/** As hexapods/imports/folder.py. */
+/** As hexapods/imports/documents/folder.py. */
 export const MAX_FILES = 10_000;
 const MAX_DEPTH = 40;
 const [MAX_DOCUMENT_BYTES, MAX_DOCUMENTS_BYTES] = [2 ** 22, 2 ** 24];
