@@ -56,10 +56,10 @@ def mjcf_text(
         keyframes: `qpos` and `ctrl` of each keyframe, by its name.
         custom: texts and numbers in `<custom>`, by name.
     """
-    return document(_Writer(spec, name).root(keyframes, custom))
+    return document(_MjcfWriter(spec, name).root(keyframes, custom))
 
 
-class _Writer:
+class _MjcfWriter:
     def __init__(self, spec: mujoco.MjSpec, name: str) -> None:
         self._spec, self._model = spec, spec.compile()
         self._root = Element("mujoco", {"model": name_of(name)})

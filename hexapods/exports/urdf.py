@@ -56,7 +56,7 @@ def robot_urdf(robot: Robot, *, prefix: str = "", meshes: Mapping[str, str] | No
         meshes: path of the file of each mesh, by the name of its geom; links whose meshes are left
             out are drawn as the shapes that touch the ground.
     """
-    return document(_Writer(robot, prefix, meshes or {}).root())
+    return document(_UrdfWriter(robot, prefix, meshes or {}).root())
 
 
 def robot_urdf_zip(robot: Robot) -> bytes:
@@ -104,7 +104,7 @@ def _stl(triangles: NDArray[np.float32]) -> bytes:
     return bytes(80) + len(triangles).to_bytes(4, "little") + facets.tobytes()
 
 
-class _Writer:
+class _UrdfWriter:
     def __init__(self, robot: Robot, prefix: str, meshes: Mapping[str, str]) -> None:
         self._robot, self._prefix, self._meshes = robot, prefix, meshes
         self._model = compile_visual_model(robot)

@@ -10,7 +10,7 @@ from hexapods.domain.text import MAX_NAME, visible
 from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled, compile_document
-from hexapods.imports.documents.robot_document import RobotDocument, choose_document
+from hexapods.imports.documents.robot_document import ChosenDocument, choose_document
 from hexapods.imports.documents.upload import Upload, last_part
 from hexapods.imports.documents.xml import Element, write_xml
 from hexapods.imports.exported_settings import ExportedSettings, read_exported_settings
@@ -53,7 +53,7 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Robot
     )
 
 
-def _read(document: RobotDocument, upload: Upload, choices: Choices, notes: Notes) -> RobotReading:
+def _read(document: ChosenDocument, upload: Upload, choices: Choices, notes: Notes) -> RobotReading:
     path, root = document.path, document.root
     meshes = MeshFiles(upload, path, notes)
     settings = read_exported_settings(root)

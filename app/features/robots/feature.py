@@ -10,7 +10,7 @@ from app.api.option_answers import SettingOption
 from app.feature import Feature
 from app.features.robots import routes
 from app.features.robots.body_fields import leg_fields, torso_fields
-from app.features.robots.readings import Readings
+from app.features.robots.readings import RobotReadings
 from hexapods.runs.catalogue import setting_option
 
 
@@ -28,7 +28,7 @@ class RobotFeature(Feature):
 
     def __init__(self, core: Services) -> None:
         super().__init__(core)
-        core.provide(Readings())
+        core.provide(RobotReadings())
 
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:

@@ -1,4 +1,4 @@
-"""Readings: robots' files that are looked at and corrected before a robot is stored.
+"""RobotReadings: robots' files that are looked at and corrected before a robot is stored.
 
 A file that was sent is kept for a while, so that a correction does not send it again. Nothing of it
 is written to disk.
@@ -41,7 +41,7 @@ def is_model_file(data: bytes) -> bool:
     return bool(data) and not start.startswith((b"{", b"["))
 
 
-class Readings:
+class RobotReadings:
     """Files of robots that were looked at lately, and what was read from them. Thread-safe."""
 
     def __init__(self, max_bytes: int = _MAX_KEPT_BYTES) -> None:

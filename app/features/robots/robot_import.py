@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from app.features.robots.readings import KeptFile, Readings, is_model_file
+from app.features.robots.readings import KeptFile, RobotReadings, is_model_file
 from app.features.robots.response_models import FoundView
 from app.storage.database.robots import RobotOrigin
 from app.storage.database.store import RunStore
@@ -48,7 +48,7 @@ def import_robot(
     data: bytes,
     name: str | None = None,
     file: str | None = None,
-    readings: Readings | None = None,
+    readings: RobotReadings | None = None,
 ) -> tuple[StoredRobot, bool]:
     """Store a robot, unless it is stored already.
 
@@ -115,7 +115,7 @@ def _gait_of(content: Mapping[str, Any], body: Robot) -> str | GaitSpec:
 
 
 def _store_reading(
-    store: RunStore, readings: Readings, content: Mapping[str, Any], name: str | None
+    store: RunStore, readings: RobotReadings, content: Mapping[str, Any], name: str | None
 ) -> tuple[StoredRobot, bool]:
     reading_id = content["reading"]
     if not isinstance(reading_id, str):

@@ -16,7 +16,7 @@ from app.api.record_response import RecordResponse
 from app.api.schemas import PatchBody, one_given
 from app.api.work import ANALYSIS, ENCODING, Slots, Work
 from app.features.robots.reading_view import RobotReadingView, body_view, reading_view
-from app.features.robots.readings import Readings, is_model_file
+from app.features.robots.readings import RobotReadings, is_model_file
 from app.features.robots.response_models import (
     StoredRobotsView,
     StoredRobotView,
@@ -127,7 +127,7 @@ def read_file(
     by `POST /robots/readings/{reading_id}`, and stored by `POST /robots` with `{"reading": id}`.
     """
     if is_model_file(body):
-        return _reading_of(services, services.of(Readings).keep(body, file or None), AS_FOUND)
+        return _reading_of(services, services.of(RobotReadings).keep(body, file or None), AS_FOUND)
     robot, gait = read_body(body)
     return RecordResponse(body_view(robot, gait))
 
@@ -149,13 +149,13 @@ def read_stored(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[Ro
     """Read the file of a stored robot by its choices, as `POST /robots/readings` does."""
     stored, upload = stored_file(services.store, robot_id)
     choices = AS_FOUND if stored.choices is None else from_json(Choices, stored.choices)
-    return _reading_of(services, services.of(Readings).keep(upload, stored.file), choices)
+    return _reading_of(services, services.of(RobotReadings).keep(upload, stored.file), choices)
 
 
 def _reading_of(
     services: Services, reading_id: str, choices: Choices
 ) -> RecordResponse[RobotReadingView]:
-    readings = services.of(Readings)
+    readings = services.of(RobotReadings)
     name = readings.file(reading_id).name
     view = reading_view(readings.read(reading_id, choices), choices, reading_id, name)
     return RecordResponse(view)
@@ -197,7 +197,7 @@ def store_robot(
     stored once, with the name that it was given first, and answered with 200.
     """
     stored, is_new = import_robot(
-        services.store, body, name, file or None, readings=services.of(Readings)
+        services.store, body, name, file or None, readings=services.of(RobotReadings)
     )
     services.publish_robots()
     location = {"Location": f"/api/v1/robots/{stored.id}"}

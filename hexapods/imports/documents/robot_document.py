@@ -14,7 +14,7 @@ from hexapods.imports.documents.expressions import Budget
 from hexapods.imports.documents.includes import Includes
 from hexapods.imports.documents.other_formats import other_document, other_format, other_zip
 from hexapods.imports.documents.upload import DOCUMENTS, MAX_DOCUMENT_BYTES, Upload
-from hexapods.imports.documents.xacro import Expansion, is_xacro
+from hexapods.imports.documents.xacro import XacroExpansion, is_xacro
 from hexapods.imports.documents.xml import Element, read_xml
 from hexapods.imports.notes import Notes, listed, quoted
 
@@ -30,7 +30,7 @@ _LEAST_JOINTS = 6
 
 
 @dataclass(frozen=True)
-class RobotDocument:
+class ChosenDocument:
     """The document that describes a robot.
 
     Attributes:
@@ -80,7 +80,7 @@ class _Robot:
         )
 
 
-def choose_document(upload: Upload, choices: Choices, notes: Notes) -> RobotDocument:
+def choose_document(upload: Upload, choices: Choices, notes: Notes) -> ChosenDocument:
     """Return the document that describes the robot: the one with the most joints.
 
     Raises:
@@ -113,7 +113,7 @@ def choose_document(upload: Upload, choices: Choices, notes: Notes) -> RobotDocu
     documents.tell(robot, robots, is_chosen=choices.file is not None)
     could_be = [other.path for other in robots if other.joints >= _LEAST_JOINTS]
     candidates = tuple(dict.fromkeys([robot.path, *could_be])) if upload.is_zip else ()
-    return RobotDocument(robot.path, robot.root, candidates, robot.arguments, robot.missing)
+    return ChosenDocument(robot.path, robot.root, candidates, robot.arguments, robot.missing)
 
 
 class _Documents:
@@ -156,7 +156,7 @@ class _Documents:
             )
         is_expanded = is_xacro(root)
         if is_expanded:
-            expanded = Expansion(
+            expanded = XacroExpansion(
                 path, self._upload, self.parse, self._arguments, self._budget
             ).expanded()
             root, arguments = expanded.root, expanded.arguments

@@ -75,7 +75,7 @@ def is_xacro(root: Element) -> bool:
     )
 
 
-class Expansion:
+class XacroExpansion:
     """Expands one document.
 
     Args:
@@ -404,4 +404,4 @@ _HANDLERS = {
     "call": "_dynamic_call",
     "include": "_include",
 }
-"""Methods of `Expansion` by the tags of xacro."""
+"""Methods of `XacroExpansion` by the tags of xacro."""

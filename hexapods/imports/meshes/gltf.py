@@ -45,7 +45,7 @@ def read_gltf(data: bytes, read_buffer: BufferReader) -> FloatArray:
         DamagedFile: if it is no glTF with triangles, or one that is compressed.
     """
     text, binary = _chunks(data) if data.startswith(b"glTF") else (data, None)
-    scene = _Scene(_document(text), binary, read_buffer)
+    scene = _GltfScene(_document(text), binary, read_buffer)
     try:
         corners = [np.empty((0, 3, 3)), *scene.triangles()]
     except DamagedFile:
@@ -102,7 +102,7 @@ def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
 
-class _Scene:
+class _GltfScene:
     """The scene of a document, with what it reads of buffers."""
 
     def __init__(

@@ -10,7 +10,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from app.features.robots.reading_view import RobotReadingView
-from app.features.robots.readings import Readings
+from app.features.robots.readings import RobotReadings
 from app.storage.errors import NotFound
 from hexapods.domain.errors import DamagedFile
 from tests.api.calls import Api, refused
@@ -188,7 +188,7 @@ def test_a_reading_that_is_not_here_says_what_to_do(api: Api) -> None:
 
 
 def test_the_oldest_files_are_forgotten_first() -> None:
-    readings = Readings(max_bytes=100)
+    readings = RobotReadings(max_bytes=100)
     first, second = readings.keep(b"a" * 60, "a.xml"), readings.keep(b"b" * 60, "b.xml")
     assert readings.file(second).name == "b.xml"
     with pytest.raises(NotFound, match="send it again"):
@@ -198,7 +198,7 @@ def test_the_oldest_files_are_forgotten_first() -> None:
 
 
 def test_files_of_other_names_are_other_files() -> None:
-    readings = Readings()
+    readings = RobotReadings()
     data = zipped({"bug.urdf": bug()})
     assert readings.keep(data, "a.zip") != readings.keep(data, "b.zip")
     assert readings.keep(data, "a.zip") == readings.keep(data, "a.zip")

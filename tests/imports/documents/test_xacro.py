@@ -8,7 +8,7 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.imports.choices import Choices
 from hexapods.imports.documents.expressions import Budget
 from hexapods.imports.documents.upload import Upload
-from hexapods.imports.documents.xacro import Expansion
+from hexapods.imports.documents.xacro import XacroExpansion
 from hexapods.imports.documents.xml import Element, read_xml
 from hexapods.imports.imported import RobotReading
 from tests.imports.robots import box_triangles, bug, dog, inspect, read, stl, zipped
@@ -27,7 +27,7 @@ def expanded(text: str, **files: str) -> Element:
     def parse(path: str) -> Element:
         return read_xml(upload.read(path, 1_000_000), path)
 
-    return Expansion("main.xacro", upload, parse, {}, Budget()).expanded().root
+    return XacroExpansion("main.xacro", upload, parse, {}, Budget()).expanded().root
 
 
 def values(text: str, **files: str) -> list[str]:
