@@ -153,7 +153,10 @@ def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatA
     """Return the columns of the trajectory, and its numbers."""
     walks = RecordedWalks.of_race(config, [lane])
     head, *rows = "".join(trajectory_csv(lambda: walks, [0])).splitlines()
-    return head.split(","), np.array([[float(n or "nan") for n in row.split(",")] for row in rows])
+    cells = [row.split(",") for row in rows]
+    assert {row.pop() for row in cells} == {"free"}, "the last column names the clock"
+    numbers = np.array([[float(number or "nan") for number in row] for row in cells])
+    return head.split(",")[:-1], numbers
 
 
 @pytest.mark.test

@@ -151,8 +151,8 @@ def _expected_kg(posed: PosedRobot, joint: int | None, ends: FloatArray) -> floa
     geoms = posed.geoms_of(posed.bodies_of(joint))
     colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
     volumes = [_volume(posed.own_surface(geom)[0]) for geom in colliding or geoms]
-    if sum(volumes) > 0:
-        return 0.5 * _DENSITY * ordered_sum(volumes)
+    if (volume := ordered_sum(volumes)) > 0:
+        return 0.5 * _DENSITY * volume
     length_m = float(np.linalg.norm(ends[1] - ends[0]))
     return _DENSITY * length_m * (_ROD_WIDTH * length_m) ** 2
 

@@ -10,7 +10,7 @@ import operator
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache, partial, reduce
 from typing import Any
 
 from hexapods.imports.notes import quoted
@@ -322,6 +322,11 @@ def _parsed(text: str) -> ast.expr:
         raise InvalidExpression("it is no expression") from error
 
 
+def _total(values: Value, start: Value = 0) -> Value:
+    """Return the sum, from left to right on every Python."""
+    return reduce(operator.add, _items(values), start)
+
+
 def _power(base: Value, exponent: Value) -> Value:
     are_whole = isinstance(base, int) and isinstance(exponent, int)
     if are_whole and exponent > 0 and base.bit_length() * exponent > _MAX_BITS:
@@ -409,7 +414,7 @@ _PYTHON: dict[str, Value] = {
     "min": Function(min),
     "max": Function(max),
     "abs": Function(abs),
-    "sum": Function(sum),
+    "sum": Function(_total),
     "round": Function(_rounded),
     "range": Function(_range),
     "sorted": Function(sorted),

@@ -196,7 +196,7 @@ def _pack(sizes: Mapping[str, int], read: Read) -> bytes:
             f"it has no document of a robot ({', '.join(DOCUMENTS)}); it has: "
             f"{listed(sorted(sizes)) or 'no files'}"
         )
-    total = sum(sizes[path] for path in paths)
+    total = sum(sizes[path] for path in paths)  # whole numbers
     if len(paths) > MAX_MEMBERS or total > MAX_UNPACKED_BYTES:
         raise _too_large(paths, f"{len(paths):,} files of {total:,} bytes")
     buffer = io.BytesIO()

@@ -211,7 +211,7 @@ class _Scanner:
         elif not end[1]:
             self._open.append((name, line))
         self._has_root = True
-        lines = "\n" * sum(blank.count("\n") for blank in blanks)
+        lines = "\n" * sum(blank.count("\n") for blank in blanks)  # whole numbers
         return f"<{tag[2]}{name}{attributes}{lines}{end[1]}>"
 
     def _attributes(self, tag: str) -> str:

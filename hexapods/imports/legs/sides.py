@@ -114,7 +114,7 @@ def _are_even(legs: Mapping[Side, Sequence[bool]]) -> bool:
     """Whether opposite sides have as many legs, and several of four and more."""
     least = 1 if len(legs["left"]) < 4 else 2
     pairs: tuple[tuple[Side, Side], ...] = ("front", "hind"), ("left", "right")
-    counts = [(sum(legs[side]), sum(legs[other])) for side, other in pairs]
+    counts = [(sum(legs[side]), sum(legs[other])) for side, other in pairs]  # whole numbers
     return all(count == other >= least for count, other in counts if count or other)
 
 

@@ -79,7 +79,7 @@ class MeshFiles:
             for path in paths
             if path.lower().endswith(".stl")
         ]
-        together = sum(min(count, _SIMPLIFIED_ABOVE) for count, _ in counts)
+        together = sum(min(count, _SIMPLIFIED_ABOVE) for count, _ in counts)  # whole numbers
         if together > 2 * MAX_TRIANGLES:
             self._most_of_binary = min(_level(counts, _FEWER_TRIANGLES), _SIMPLIFIED_ABOVE)
 
@@ -169,10 +169,11 @@ class MeshFiles:
                 )
         else:
             before = sum(self._before[name] for name in names)  # whole numbers
+            after = sum(self._triangles[name] for name in names)  # whole numbers
             self._notes.repair(
                 "meshes",
                 f"{len(names)} meshes were simplified from {before:,} to "
-                f"{sum(self._triangles[name] for name in names):,} triangles together, since more "
+                f"{after:,} triangles together, since more "
                 "would not fit into the memory",
             )
 
@@ -239,9 +240,8 @@ class MeshFiles:
 
     def _together(self) -> int:
         """Return how many triangles MuJoCo is to read."""
-        return sum(
-            count * max(self._copies.get(name, 1), 1) for name, count in self._triangles.items()
-        )
+        counts = [n * max(self._copies.get(name, 1), 1) for name, n in self._triangles.items()]
+        return sum(counts)  # whole numbers
 
     def _fit(self) -> None:
         """Simplify the largest meshes if all together have too many triangles."""
@@ -332,7 +332,7 @@ def _level(weights: Sequence[tuple[int, int]], together: int) -> int:
         weights: for each how many it has, and how often that counts.
         together: how many all may have.
     """
-    left, copies = together, sum(times for _, times in weights)
+    left, copies = together, sum(times for _, times in weights)  # whole numbers
     for count, times in sorted(weights):
         if count * copies >= left:
             return max(left // copies, 1)
