@@ -25,6 +25,7 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     dashboard.primary.click()
     left = dashboard.actions.get_by_text(re.compile(r"\d (s|min) left"))
     expect(left).to_be_visible()
+    expect(page.locator(".time-bar .play")).to_be_visible()
     port = first.port
     first.kill()
 

@@ -12,7 +12,7 @@ OWN = ("agent", "settings")
 DISTURBANCES = ("limp", "patch")
 """One of the robot, with a list, and one of the ground."""
 DISTURBS = "/api/v1/trainings/{run_id}/disturbances"
-STORES_ROBOTS = "/api/v1/robots"
+STORES_ROBOTS, READS_ROBOTS = "/api/v1/robots", "/api/v1/robots/readings"
 STORES_LESSONS = "/api/v1/lessons"
 
 
@@ -22,16 +22,18 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     The fields that all agents have stand in the body of the first one, and those of a walk, with
     the parts of a gait, in that of a training.
     The operation that disturbs a running training keeps all kinds of disturbances, and that which
-    stores a robot its parts, where others have the name of a robot. What several of these have in
-    common the first one keeps. Of a lesson as YAML only what it needs is left: it is read as the
-    JSON is.
+    stores a robot, or looks at one, its parts, where others have the name of a robot. What several
+    of these have in common the first one keeps. Of a lesson as YAML only what it needs is left: it
+    is read as the JSON is.
     """
     short: dict[str, Any] = _with_few_choices(contract)
-    for path in (DISTURBS, STORES_ROBOTS):
+    for path in (DISTURBS, STORES_ROBOTS, READS_ROBOTS):
         short["paths"][path]["post"] = copy.deepcopy(contract["paths"][path]["post"])
     _keep_once(_schema_of(short, DISTURBS)["anyOf"])
-    robot = _schema_of(short, STORES_ROBOTS)["properties"]["robot"]
-    _keep_once([schema for schema in robot["anyOf"] if "properties" in schema])
+    bodies = [*_schema_of(short, STORES_ROBOTS)["anyOf"], _schema_of(short, READS_ROBOTS)]
+    for body in bodies:
+        if (robot := body["properties"].get("robot")) is not None:
+            _keep_once([schema for schema in robot["anyOf"] if "properties" in schema])
     schemas = short["components"]["schemas"]
     settings = {
         name: set(schema["properties"])

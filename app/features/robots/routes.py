@@ -85,6 +85,13 @@ class RobotChangeBody(PatchBody):
         return {name: value for name, value in values.items() if value is not None}
 
 
+def _described(body: type[Body]) -> dict[str, Any]:
+    """Return the schema of a body, which refers to records that the document describes."""
+    schema = body.model_json_schema(ref_template="#/components/schemas/{model}")
+    schema.pop("$defs", None)
+    return schema
+
+
 READING = Work(name="reading", spectators=Slots(1, 1), operators=Slots(2, 2))
 """Robots' files that are read before they are stored, again after each correction."""
 
@@ -108,7 +115,7 @@ class ChoicesBody(Body):
     openapi_extra={
         "requestBody": {
             "content": {
-                "application/json": {"schema": ReadingBody.model_json_schema()},
+                "application/json": {"schema": _described(ReadingBody)},
                 **{kind: {"schema": BINARY} for kind in FILE_TYPES},
             },
             "required": True,
@@ -172,8 +179,8 @@ def _reading_of(
                 "application/json": {
                     "schema": {
                         "anyOf": [
-                            RobotBody.model_json_schema(),
-                            ReadRobotBody.model_json_schema(),
+                            _described(RobotBody),
+                            _described(ReadRobotBody),
                         ]
                     }
                 },
