@@ -1,7 +1,7 @@
 """Draws the sketch of a robot on a turntable: its bodies, coloured by groups, and its feet."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import viser
@@ -21,7 +21,7 @@ from hexapods.imports.imported import Sketch, SketchFoot, SketchPart
 SKETCH_ROOT = f"{WORLD}/sketch"
 GROUP_COLORS = ("#7d63f7", "#e25c8d", "#25a493", "#c08a1e", "#6a8aac", "#9a9a2a")
 """Between those that the page has for groups in light and in dark."""
-PART: Rgb = (118, 126, 140)
+_PART: Rgb = (118, 126, 140)
 FOOT: Rgb = (255, 176, 32)
 _TABLE: Rgb = (150, 160, 178)
 TABLE_MARGIN, _TABLE_CORNERS = 1.12, 96
@@ -61,7 +61,6 @@ def draw_sketch(
         position=(0.0, 0.0, _ABOVE_M * size),
         cast_shadow=False,
     )
-    colors = _colors(groups)
     for number, part in enumerate(sketch.parts):
         if part.mesh is not None:
             corners, faces = part.mesh.arrays()
@@ -69,7 +68,7 @@ def draw_sketch(
                 f"{SKETCH_ROOT}/part/{number}",
                 corners,
                 faces,
-                color=colors.get(part.leg, rgb(GROUP_COLORS[0]) if part.leg else PART),
+                color=part_color(part.leg, groups),
                 flat_shading=True,
                 side="double",
                 receive_shadow=False,
@@ -150,10 +149,14 @@ def _vector(point: FloatArray) -> Vector:
     return x, y, z
 
 
-def _colors(groups: Sequence[Sequence[int]]) -> Mapping[int, Rgb]:
-    """Return the colour of each leg that is in a group."""
-    return {
-        leg: rgb(GROUP_COLORS[number % len(GROUP_COLORS)])
-        for number, group in enumerate(groups)
-        for leg in group
-    }
+def part_color(leg: int, groups: Sequence[Sequence[int]]) -> Rgb:
+    """Return the colour of a body: that of its leg's group, or the first where it is in none.
+
+    Args:
+        leg: number of its leg, from 1; 0 for what is of no leg.
+        groups: legs of each group, from 1.
+    """
+    if not leg:
+        return _PART
+    number = next((number for number, group in enumerate(groups) if leg in group), 0)
+    return rgb(GROUP_COLORS[number % len(GROUP_COLORS)])

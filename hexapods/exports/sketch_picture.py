@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from hexapods.domain.types import FloatArray
-from hexapods.drawing.colormap import Rgb, rgb
-from hexapods.drawing.sketch import FOOT, GROUP_COLORS, PART, TABLE_MARGIN, radius_of
+from hexapods.drawing.colormap import Rgb
+from hexapods.drawing.sketch import FOOT, TABLE_MARGIN, part_color, radius_of
 from hexapods.exports.video_pictures import gl_context
 from hexapods.imports.imported import Sketch
 
@@ -62,11 +62,7 @@ class _Picture:
     ) -> None:
         self._sketch, self._width, self._height = sketch, width, height
         self._radius_m = radius_of(sketch)
-        self._colors = {
-            leg: rgb(GROUP_COLORS[number % len(GROUP_COLORS)])
-            for number, group in enumerate(groups)
-            for leg in group
-        }
+        self._groups = groups
         top_m = max((part.at_m[2] for part in sketch.parts), default=0.0)
         self._look_at: FloatArray = np.array([0.0, 0.0, top_m / 2])
         half_rad = math.radians(_FOV_DEG / 2)
@@ -180,7 +176,6 @@ class _Picture:
             if part.mesh is None:
                 continue
             vertices, faces = part.mesh.arrays()
-            color = self._colors.get(part.leg, rgb(GROUP_COLORS[0]) if part.leg else PART)
             if not _has_volume(vertices):
                 continue
             # A shell has an inertia even where the mesh is open.
@@ -193,7 +188,7 @@ class _Picture:
             spec.worldbody.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_MESH,
                 meshname=f"part {number}",
-                rgba=_rgba(color),
+                rgba=_rgba(part_color(part.leg, self._groups)),
                 contype=0,
                 conaffinity=0,
             )
