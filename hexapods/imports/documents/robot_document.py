@@ -92,6 +92,11 @@ def choose_document(upload: Upload, choices: Choices, notes: Notes) -> ChosenDoc
     if not upload.is_zip:
         if sentence := other_format(upload.start, upload.name):
             raise DamagedFile(sentence)
+        if choices.file not in (None, upload.name):
+            raise InvalidInput(
+                f"{quoted(upload.name)} is one document, and no zip that has "
+                f"{quoted(choices.file)!r}"
+            )
         robot = documents.robot(upload.name)
         robots = [robot]
     elif choices.file is not None:

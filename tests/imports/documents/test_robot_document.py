@@ -159,3 +159,9 @@ def test_of_documents_of_which_the_one_with_the_bodies_is_damaged_that_is_told()
 
     with pytest.raises(DamagedFile, match=r"bodies\.xml is no whole XML document"):
         read(zipped(files), "dog.zip")
+
+
+def test_a_lone_document_is_the_only_choice() -> None:
+    assert read(dog(), "dog.xml", Choices(file="dog.xml")).name == "dog"
+    with pytest.raises(InvalidInput, match=r"dog\.xml is one document, and no zip that has 'cat"):
+        read(dog(), "dog.xml", Choices(file="cat.xml"))
