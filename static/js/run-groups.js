@@ -115,20 +115,14 @@ export function sweepsOf(runs) {
   return chosen;
 }
 
-/** Numbers by size, all else by the order of the list. @type {(a: unknown, b: unknown) => number} */
-const byValue = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : 0);
-
 /**
- * A sweep as a group, its runs by what differs.
+ * A sweep as a group, its runs named by what differs, in the order of the list.
  * @param {Sweep} sweep
- * @param {boolean} isByValue
  * @returns {Group}
  */
-function groupOfSweep({ varied, members }, isByValue) {
+function groupOfSweep({ varied, members }) {
   const all = members.map(({ fields }) => fields);
-  const compare = (/** @type {Known} */ a, /** @type {Known} */ b) =>
-    varied.map((name) => byValue(a.fields[name]?.value, b.fields[name]?.value)).find((order) => order !== 0) ?? 0;
-  const rows = (isByValue ? members.toSorted(compare) : members).map(({ run, fields }) => {
+  const rows = members.map(({ run, fields }) => {
     const difference = beginning(differenceInWords(fields, varied));
     return isNamed(run) ? { run, name: titleOf(run), facts: [difference] } : { run, name: difference, facts: [] };
   });
@@ -138,15 +132,15 @@ function groupOfSweep({ varied, members }, isByValue) {
   return { key, title: titleOfSweep(first, varied), facts: commonInWords(all, varied), rows, isSweep: true };
 }
 
-/** @type {(runs: AnyRun[], isByValue: boolean) => Group[]} */
-function bySweep(runs, isByValue) {
+/** @param {AnyRun[]} runs */
+function bySweep(runs) {
   const whole = runs.filter((run) => !("damaged" in run));
   const sweeps = ["training", "race"].flatMap((kind) =>
     sweepsOf(/** @type {Run[]} */ (whole.filter((run) => run.kind === kind))));
   /** @type {Map<string, Group>} */
   const groupByRun = new Map();
   for (const sweep of sweeps) {
-    const group = groupOfSweep(sweep, isByValue);
+    const group = groupOfSweep(sweep);
     sweep.members.forEach(({ run }) => groupByRun.set(run.id, group));
   }
   return inOrder(runs, (run) => groupByRun.get(run.id) ?? null);
@@ -214,8 +208,7 @@ function byRace(runs, everyRun) {
   const raceOfRun = new Map(runs.map((run) => [run.id, raceOf(run, races)]));
   for (const race of new Set([...raceOfRun.values()].filter((item) => item !== null))) {
     const members = runs.filter((run) => raceOfRun.get(run.id) === race);
-    const inside = [...members.filter(({ kind }) => kind === "race"), ...members.filter(({ kind }) => kind !== "race")];
-    const group = groupOf(`race ${race.id}`, titleOf(race), inside, factsOf(race));
+    const group = groupOf(`race ${race.id}`, titleOf(race), members, factsOf(race));
     const rows = group.rows.map((row) => (row.run.id === race.id ? { ...row, name: "The race" } : row));
     groups.set(race.id, { ...group, rows });
   }
@@ -246,18 +239,17 @@ const byDay = (runs, now) =>
 export const GROUPING_TITLES = { sweep: "By sweep", race: "By race", day: "By day", none: "No groups" };
 
 /**
- * Runs in groups. Those of a group keep their order, but for a sweep that `isByValue`, and a race with its trainings.
+ * Runs in groups, in which they keep the order of the list.
  * @param {object} list
  * @param {AnyRun[]} list.runs in the order of the list
  * @param {string} list.by
  * @param {Run[]} list.everyRun all that are known, the newest first: a race may be listed elsewhere than its training
- * @param {boolean} [list.isByValue]
  * @param {number} [list.now]
  * @returns {Group[]}
  */
-export function groupRuns({ runs, by, everyRun, isByValue = true, now = Date.now() }) {
+export function groupRuns({ runs, by, everyRun, now = Date.now() }) {
   if (runs.length === 0) return [];
-  if (by === "sweep") return bySweep(runs, isByValue);
+  if (by === "sweep") return bySweep(runs);
   if (by === "race") return byRace(runs, everyRun);
   return by === "day" ? byDay(runs, now) : [groupOf("all", "", runs)];
 }

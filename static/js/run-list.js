@@ -68,13 +68,9 @@ export function setGrouping(by) {
   page.grouping.value = by;
 }
 
-/** Orders in which a sweep stands as the list does; else it stands by what differs. */
-const OWN_ORDERS = ["name", "distance"];
-
 /** The runs that are shown, in groups. */
 export const runGroups = computed(() => groupRuns({
   runs: shownRuns.value, by: grouping.value, everyRun: everyRun.value,
-  isByValue: !OWN_ORDERS.includes(filters.value.sort),
 }));
 
 /** The runs that are shown, from the top to the bottom. */

@@ -241,7 +241,7 @@ def test_a_sweep_is_one_group_named_by_what_differs(dashboard: Dashboard, sweep:
     page, details = dashboard.page, dashboard.details
     dashboard.open(f"{sweep.address}#runs")
     group = page.get_by_role("list", name="Runs: Sweep of α")
-    expect(group.get_by_role("heading")).to_have_text(["α\u00a00.1", "α\u00a00.5", "α\u00a00.9"])
+    expect(group.get_by_role("heading")).to_have_text(["α\u00a00.9", "α\u00a00.5", "α\u00a00.1"])
     expect(page.get_by_text("Q-learning · 60 steps · Left-right, opposite")).to_be_visible()
     expect(page.get_by_text(NOTES, exact=True)).to_be_visible()
     expect(group.get_by_role("listitem").first).to_contain_text(
@@ -254,7 +254,7 @@ def test_a_sweep_is_one_group_named_by_what_differs(dashboard: Dashboard, sweep:
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     expect(details.get_by_role("heading", level=2)).to_have_text(
-        re.compile(r"^Q-learning, α\s0\.1, 60 steps → −?0\.\d\d\sm$")
+        re.compile(r"^Q-learning, α\s0\.9, 60 steps → −?0\.\d\d\sm$")
     )
     first.focus()
     for _ in range(2):

@@ -65,11 +65,11 @@ test("details are of the first run, of the one that was opened, or of all that a
   setSelected(two.id, true);
   assert.deepEqual(shown(), [first.id]);
   setSelected(first.id, true);
-  assert.deepEqual([shown(), isOfSelection.value], [[two.id, first.id], true], "in the order of the list");
+  assert.deepEqual([shown(), isOfSelection.value], [[first.id, two.id], true], "by the seeds in which they differ");
   openDetails(three.id);
   assert.deepEqual(shown(), [three.id], "beside the selection");
   openDetails(two.id);
-  assert.deepEqual(shown(), [two.id, first.id]);
+  assert.deepEqual(shown(), [first.id, two.id]);
   applyEvent("run-deleted", { id: two.id });
   assert.deepEqual(shown(), [first.id]);
   setSelected(first.id, false);

@@ -6,7 +6,7 @@ import { COLUMNS, shownColumns, toggleColumn } from "../../static/js/run-columns
 import { change, page, read, write } from "../../static/js/page-state.js";
 import { groupRuns } from "../../static/js/run-groups.js";
 import { grouping, listedRuns, runGroups, setGrouping } from "../../static/js/run-list.js";
-import { factsOf, namesAmong, outcomeInWords, shareOf, withResult } from "../../static/js/run-words.js";
+import { byDifference, factsOf, namesAmong, outcomeInWords, shareOf, withResult } from "../../static/js/run-words.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -29,11 +29,11 @@ const raced = (changes = {}, more = {}) => makeRun({
   ...more,
 });
 
-/** The runs are given from the oldest on. @param {Run[]} runs @param {string} [by] @param {object} [more] */
-function grouped(runs, by = "sweep", more = {}) {
+/** The runs are given from the oldest on. @param {Run[]} runs @param {string} [by] */
+function grouped(runs, by = "sweep") {
   applyEvent("snapshot", { runs, stage: STAGE, scene: null, role: "operator" });
   const newestFirst = runs.toReversed();
-  return groupRuns({ runs: newestFirst, by, everyRun: newestFirst, ...more });
+  return groupRuns({ runs: newestFirst, by, everyRun: newestFirst });
 }
 /** @param {ReturnType<typeof groupRuns>} groups */
 const inShort = (groups) => groups.map(({ title, rows }) => [title, ...rows.map(({ name }) => name)]);
@@ -44,24 +44,24 @@ beforeEach(() => {
   change({ grouping: null, columns: null, list: new URLSearchParams(), selected: [] });
 });
 
-test("trainings that differ in one setting are a sweep, by its values; the others stand on their own", () => {
+test("trainings that differ in one setting are a sweep, the newest first; the others stand on their own", () => {
   const alpha = [0.5, 0.1, 0.3].map((value) => trained({ settings: { alpha: value } }));
   const other = trained({ gait: "wave", steps: 20, seed: 4 });
   const groups = grouped([...alpha, other]);
   assert.deepEqual(inShort(groups), [
-    ["On its own", "Learner, 500 steps"], ["Sweep of α", "α\u00a00.1", "α\u00a00.3", "α\u00a00.5"],
+    ["On its own", "Learner, 500 steps"], ["Sweep of α", "α\u00a00.3", "α\u00a00.1", "α\u00a00.5"],
   ]);
   assert.deepEqual(groups[1].facts, ["Learner", "500 steps", "The tripod", "seed\u00a00"]);
   assert.deepEqual(groups[0].rows[0].facts, ["20 steps", "The wave", "seed\u00a04"]);
-  assert.deepEqual(inShort(grouped(alpha, "sweep", { isByValue: false }))[0].slice(1),
-    ["α\u00a00.3", "α\u00a00.1", "α\u00a00.5"], "as the list is ordered");
+  const byName = groupRuns({ runs: [alpha[1], alpha[2], alpha[0]], by: "sweep", everyRun: alpha });
+  assert.deepEqual(inShort(byName)[0].slice(1), ["α\u00a00.1", "α\u00a00.3", "α\u00a00.5"], "as the list is ordered");
 });
 
 test("a name that a person gave stays, and what differs stands beside it", () => {
   const [first, other] = [trained(), trained({ seed: 7 }, { name: "Anna’s", is_named: true })];
   const [group] = grouped([first, other]);
   assert.equal(group.title, "Seeds");
-  assert.deepEqual(group.rows.map(({ name, facts }) => [name, ...facts]), [["Seed\u00a00"], ["Anna’s", "Seed\u00a07"]]);
+  assert.deepEqual(group.rows.map(({ name, facts }) => [name, ...facts]), [["Anna’s", "Seed\u00a07"], ["Seed\u00a00"]]);
 });
 
 test("a setting by default is no difference between learners that have other defaults", () => {
@@ -77,7 +77,7 @@ test("a grid of two settings is one group; a run in several sweeps is in the lar
   const grid = [0.1, 0.3].flatMap((alpha) => [0, 1].map((seed) => trained({ seed, settings: { alpha } })));
   assert.deepEqual(inShort(grouped(grid)), [[
     "Sweep of α and seed",
-    "α\u00a00.1, seed\u00a00", "α\u00a00.1, seed\u00a01", "α\u00a00.3, seed\u00a00", "α\u00a00.3, seed\u00a01",
+    "α\u00a00.3, seed\u00a01", "α\u00a00.3, seed\u00a00", "α\u00a00.1, seed\u00a01", "α\u00a00.1, seed\u00a00",
   ]]);
   const cross = [0.1, 0.3, 0.5].map((alpha) => trained({ settings: { alpha } }));
   const groups = grouped([...cross, trained({ steps: 900 })]);
@@ -172,4 +172,15 @@ test("names among others are short, and none twice", () => {
   assert.deepEqual(namesAmong([two, again]), ["Learner, 500 steps", "Learner, 500 steps (2)"]);
   assert.deepEqual(factsOf(trained({ disturbances: [{ kind: "slope", at_step: 9, degrees: 8 }] })).at(-1),
     "Slope 8° from step 10");
+});
+
+test("what is compared is in the order of the numbers that differ, and else as it was selected", () => {
+  applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator" });
+  const [high, low, middle] = [0.5, 0.1, 0.3].map((alpha) => trained({ settings: { alpha } }));
+  assert.deepEqual(byDifference([high, low, middle]), [low, middle, high]);
+  assert.deepEqual(byDifference([high, raced(), low]).length, 3);
+  const [slope, flat] = [trained({ gait: "wave" }), trained()];
+  assert.deepEqual(byDifference([slope, flat]), [slope, flat]);
+  const damaged = /** @type {any} */ ({ id: "bad", kind: null, name: null, created_at: null, damaged: "lost" });
+  assert.deepEqual(byDifference([high, damaged, low]), [high, damaged, low]);
 });
