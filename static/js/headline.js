@@ -82,9 +82,11 @@ export function whyMarching(agent) {
   return searches ? `${gain}: no move that it simulates gains distance on this robot.` : `${gain}.`;
 }
 
-// ---- announcements for screen readers, each made once: results, failures, a lost connection
+// ---- announcements for screen readers, each made once: who takes the lead, results, failures, a lost connection
 
 const LOST = "Connection lost, reconnecting";
+/** Robots that overtake each other in turn are told of at most so often [ms]. */
+const LEAD_PAUSE_MS = 4000;
 
 /** The text of the page's live region. */
 export const announcement = signal("");
@@ -94,6 +96,7 @@ export function announceOutcomes() {
     const { announcement: words } = narrative.value;
     return words ? `${shownRun.value?.id} ${words}` : "";
   });
+  announceLeads();
   effect(() => {
     const [, ...words] = outcome.value.split(" ");
     if (words.length) announcement.value = words.join(" ");
@@ -101,5 +104,32 @@ export function announceOutcomes() {
   effect(() => {
     if (connection.value === "reconnecting") announcement.value = LOST;
     else if (connection.value === "live" && announcement.peek() === LOST) announcement.value = "Connected again";
+  });
+}
+
+/** Announce each new leader of a race, the newest of those who change within the pause. */
+function announceLeads() {
+  const leading = computed(() => {
+    const { leader, state } = narrative.value;
+    return leader ? `${shownRun.value?.id} ${leader.lane}` : state === "racing" ? "level" : "";
+  });
+  let told = "";
+  let last_ms = -Infinity;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let waiting;
+  const tell = () => {
+    waiting = undefined;
+    const { leader } = narrative.peek();
+    // Where it ends meanwhile the outcome is announced; who leads again has been told already.
+    if (!leader || leading.peek() === told) return;
+    [told, last_ms] = [leading.peek(), performance.now()];
+    announcement.value = leader.words;
+  };
+  effect(() => {
+    if (leading.value === "") told = "";
+    if (leading.value === "level" || leading.value === told || waiting !== undefined) return;
+    const pause_ms = last_ms + LEAD_PAUSE_MS - performance.now();
+    if (pause_ms <= 0) tell();
+    else waiting = setTimeout(tell, pause_ms);
   });
 }

@@ -1,9 +1,11 @@
 // Why the leader is ahead, from recorded figures only.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { headline, narrative as saidNow, whyMarching } from "../../static/js/headline.js";
+import {
+  announcement, announceOutcomes, headline, narrative as saidNow, whyMarching,
+} from "../../static/js/headline.js";
 import { madeAt, stepEnds } from "../../static/js/narrative/moment.js";
-import { chanceInWords, reasonOf, workOf } from "../../static/js/narrative/sentences.js";
+import { chanceInWords, leaderOf, reasonOf, workOf } from "../../static/js/narrative/sentences.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
@@ -111,7 +113,7 @@ test("a reason has at most 25 words", () => {
 
 test("at the end it is told how the winner spent its time", () => {
   const winner = track(steps(4, 0.01), { thinking: 1 });
-  assert.equal(workOf(winner, 6, 50), "It thought for 50 % of the time, and made 3 steps of 50.");
+  assert.equal(workOf(winner, 6, 50), "It thought 50 % of the time: 3 of 50 steps.");
   assert.equal(workOf(undefined, 6, 50), null);
 });
 
@@ -176,4 +178,61 @@ test("why a robot marches on the spot is told of who learns or simulates, and of
   assert.match(whyMarching("learner"), /still have the highest values\. More practice changes that\.$/);
   assert.match(whyMarching("greedy"), /no move that it simulates gains distance/);
   assert.equal(whyMarching("random-walk"), "under 1 cm in ten steps.");
+});
+
+// ---- what a screen reader hears of a race
+
+/** @type {(title: string, lane: number, distance_m: number) => any} */
+const laneAt = (title, lane, distance_m) => ({ title, lane, distance_m, finished_m: null });
+
+test("a lane leads that is a centimetre ahead of all others, or walks alone", () => {
+  const [greedy, learner] = [laneAt("Greedy", 0, 0.12), laneAt("Learner", 1, 0.1)];
+  assert.deepEqual(leaderOf([learner, greedy]), { lane: 0, words: "Greedy takes the lead, 0.12\u00a0m" });
+  assert.equal(leaderOf([greedy, laneAt("Learner", 1, 0.115)]), null);
+  assert.equal(leaderOf([laneAt("Greedy", 0, 0.005)]), null);
+  assert.equal(leaderOf([laneAt("Greedy", 0, 0.02)])?.lane, 0);
+});
+
+test("each change of the lead is announced once, and those in quick succession by the newest", ({ mock }) => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  let now_ms = 100_000;
+  mock.method(performance, "now", () => now_ms);
+  const wait = (/** @type {number} */ time_ms) => {
+    now_ms += time_ms;
+    mock.timers.tick(time_ms);
+  };
+  const lanes = [{ agent: "learner" }, { agent: "greedy" }];
+  const run = makeRun({ id: "r", kind: "race", state: "running", progress: { done: 9, total: 100 },
+    config: { steps: 50, lanes } });
+  /** @param {number} learner_m @param {number} greedy_m @param {object} [changes] */
+  const show = (learner_m, greedy_m, changes = {}) => {
+    applyEvent("snapshot", {
+      runs: [{ ...run, ...changes }], stage: makeStage({ run_id: run.id, phase: "live" }),
+      scene: {
+        run_id: run.id, kind: "race", phase: "race", ended: false, time_out_s: null, time_s: 3, ...changes,
+        lanes: [makeSceneLane({ lane: 0, step: 5, distance_m: learner_m }),
+          makeSceneLane({ lane: 1, name: "Greedy", step: 5, distance_m: greedy_m })],
+      },
+    });
+    return announcement.value;
+  };
+  announceOutcomes();
+  assert.equal(show(0, 0), "");
+  assert.equal(show(0.05, 0.02), "Learner takes the lead, 0.05\u00a0m");
+  wait(1000);
+  assert.equal(show(0.06, 0.08), "Learner takes the lead, 0.05\u00a0m", "so soon after the one before nothing is said");
+  show(0.1, 0.08);
+  wait(3000);
+  assert.equal(announcement.value, "Learner takes the lead, 0.05\u00a0m", "it leads again, as was said");
+  show(0.1, 0.12);
+  assert.equal(announcement.value, "Greedy takes the lead, 0.12\u00a0m");
+  wait(500);
+  show(0.15, 0.13);
+  show(0.15, 0.17);
+  show(0.2, 0.18);
+  wait(3500);
+  assert.equal(announcement.value, "Learner takes the lead, 0.20\u00a0m", "with the distance of the moment it is said");
+  wait(5000);
+  show(0.2, 0.205);
+  assert.equal(announcement.value, "Learner takes the lead, 0.20\u00a0m", "lanes that are level change nothing");
 });

@@ -200,7 +200,7 @@ const REASONS = [
     assertNear(apartIn(apart)[0], endAt(first, 10) - endAt(second, 10), apartIn(apart)[1]);
     assert.ok(mean(second) <= 1.1 * mean(first) && mean(first) <= 1.1 * mean(second));
   }],
-  [/^It thought for (\d+) % of the time, and made (\d+) steps of (\d+)\. ?/, (facts, [share, made, steps]) => {
+  [/^It thought (\d+) % of the time: (\d+) of (\d+) steps\. ?/, (facts, [share, made, steps]) => {
     const [first] = inOrder(facts.lanes);
     assert.ok(facts.isTimedOut);
     assert.deepEqual([Number(made), Number(steps)], [first.madeUntil, facts.steps]);

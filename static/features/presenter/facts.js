@@ -15,7 +15,10 @@ export function Facts() {
   return html`
     <dl class="facts-of-race">
       <div><dt>Rule</dt><dd>${rule}</dd></div>
-      <div><dt>Clock</dt><dd>${sentence(clockTitle(clock.value))}. Solid: walking, hatched: thinking.</dd></div>
+      <div>
+        <dt>Clock</dt>
+        <dd>${sentence(clockTitle(clock.value))}. Bar: distance. Thin: time, hatched while thinking.</dd>
+      </div>
       ${left !== null && html`
         <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
       `}

@@ -1,14 +1,15 @@
-// The board: the lanes of the race with ranks, distances and times, the same race by each clock, and its curve.
+// The board: the lanes of the race with ranks, distances as bars and times, the same race by each clock, its curve.
 import { setStage } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import { narrative, whyMarching } from "../headline.js";
-import { isLoser, isOver, isTimedOut, standings } from "../race.js";
+import { isLoser, isOver, isTimedOut, standings, timeline } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isProjected } from "../page.js";
-import { earlyEndOf } from "../narrative/moment.js";
+import { distanceOf, earlyEndOf } from "../narrative/moment.js";
+import { percent, shareOf } from "../scale.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";
@@ -51,7 +52,12 @@ const isToldAll = () => !isProjected.value && (isAtLeast("try") || !isTimedOut.v
 
 /** @param {{ rows: Standing[] }} props */
 function Standings({ rows }) {
-  const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
+  const finish_m = timeline.value?.finish_line_m ?? null;
+  const ends = {
+    elapsed_s: Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9),
+    distance_m: Math.max(finish_m ?? 0, ...rows.map((row) => distanceOf(row)), 1e-9),
+    finish_m,
+  };
   const isDeep = isAtLeast("study");
   return html`
     ${!isProjected.value && html`<${BranchWords} />`}
@@ -69,10 +75,10 @@ function Standings({ rows }) {
           ${isDeep && html`<th scope="col" title="Transitions simulated in order to decide">Simulated</th>`}
         </tr>
       </thead>
-      ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
+      ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} ends=${ends} />`)}
       ${isDeep && html`<${BestKnown} />`}
     </table>
-    ${isToldAll() && html`<p class="dim fine">Solid: walking. Hatched: thinking.</p>`}
+    ${isToldAll() && html`<p class="dim fine">Bar: distance. Thin: time, hatched while thinking.</p>`}
   `;
 }
 
@@ -108,8 +114,14 @@ function BestKnown() {
   `;
 }
 
-/** @param {{ row: Standing, longest: number }} props */
-function Lane({ row, longest }) {
+/**
+ * What the bars of all lanes are drawn against: the longest time [s], the finish line where it is known, and the
+ * farther of that and the first lane [m].
+ * @typedef {{ elapsed_s: number, distance_m: number, finish_m: number | null }} Ends
+ */
+
+/** @param {{ row: Standing, ends: Ends }} props */
+function Lane({ row, ends }) {
   const isDeep = isAtLeast("study");
   return html`
     <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }} aria-label=${row.title}>
@@ -133,7 +145,7 @@ function Lane({ row, longest }) {
       <tr class="under">
         <td></td>
         <td colspan="5">
-          <${TimeStrip} spent=${row.spent} longest=${longest} />
+          <${Bars} row=${row} ends=${ends} />
           ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
           ${isLoser(row.lane) && isAtLeast("try") && !isProjected.value && html`
             <${Slot} name="lane that loses" row=${row} />
@@ -198,15 +210,22 @@ function linesBelow(row) {
 /** Distance of a lane that walks on after time-out; none once the show has ended there. @param {Standing} row */
 const distanceSoFar = (row) => (isOver.value ? null : row.distance_m);
 
-/** @param {{ spent: { walked: number, thought: number }, longest: number }} props */
-function TimeStrip({ spent: { walked, thought }, longest }) {
-  /** @param {number} seconds */
-  const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
-  const label = `Walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
+/** The distance of a lane as a bar, with the finish line, and its time as a thin line. */
+/** @param {{ row: Standing, ends: Ends }} props */
+function Bars({ row, ends: { elapsed_s, distance_m, finish_m } }) {
+  const { walked, thought } = row.spent;
+  const finish = finish_m === null ? "" : ` of ${metres(finish_m)} to the finish line`;
+  const times = `walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
   return html`
-    <div class="strip" role="img" aria-label=${label}>
-      <i class="walked" style=${width(walked)}></i>
-      <i class="thought" style=${width(thought)}></i>
+    <div class="bars" role="img" aria-label=${`${metres(distanceOf(row))}${finish}; ${times}`}>
+      <div class="distance-bar">
+        <i style=${{ width: percent(shareOf(distanceOf(row), 0, distance_m)) }}></i>
+        ${finish_m !== null && html`<b style=${{ left: percent(shareOf(finish_m, 0, distance_m)) }}></b>`}
+      </div>
+      <div class="time-line">
+        <i class="walked" style=${{ width: percent(shareOf(walked, 0, elapsed_s)) }}></i>
+        <i class="thought" style=${{ width: percent(shareOf(thought, 0, elapsed_s)) }}></i>
+      </div>
     </div>
   `;
 }

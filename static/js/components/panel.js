@@ -42,24 +42,31 @@ export function Panel() {
 
 // ---- how it stands, and why; in the tab that explains a step, the move
 
+/** Three lines at most, whatever they say: what is below never moves. */
 function Reason() {
   const isOfMove = tab.value === explainingTab.value;
   const { title, words, color } = isOfMove ? ofMove() : ofRun();
   return html`
     <header class="reason" aria-label=${isOfMove ? "The move" : "How it stands"}>
-      ${isOfMove && !isAtLeast("try") && html`
-        <button class="link back" onClick=${() => openTab("board")}>‹ Back to the board</button>
-      `}
-      <h2 style=${{ "--agent": color }}>
-        ${color !== "transparent" && html`<span class="swatch" aria-hidden="true"></span>`}${title}
-      </h2>
-      <p>${words}</p>
-      ${!isOfMove && canExplain() && html`
-        <button class="link" onClick=${openExplanation}>
-          Explain ${phase.value === "ended" ? "the last" : "this"} step
-        </button>
-      `}
+      <div class="says" title=${words && `${title}. ${words}`}>
+        <h2 style=${{ "--agent": color }}>
+          ${color !== "transparent" && html`<span class="swatch" aria-hidden="true"></span>`}${title}
+        </h2>
+        <p>${words}</p>
+      </div>
+      ${!isAtLeast("try") && html`<div class="ways"><${Ways} isOfMove=${isOfMove} /></div>`}
     </header>
+  `;
+}
+
+/** In Watch, which has no tabs: from the board to the explanation of a step, and back. */
+/** @param {{ isOfMove: boolean }} props */
+function Ways({ isOfMove }) {
+  if (isOfMove) return html`<button class="link" onClick=${() => openTab("board")}>‹ Back to the board</button>`;
+  return canExplain() && html`
+    <button class="link" onClick=${openExplanation}>
+      Explain ${phase.value === "ended" ? "the last" : "this"} step
+    </button>
   `;
 }
 
@@ -75,9 +82,8 @@ function ofRun() {
   return { title, words, color };
 }
 
-/** Who tries has a tab for it. */
-const canExplain = () => explainingTab.value !== null && !isAtLeast("try") &&
-  Boolean(shownRun.value?.progress.done) && scale.value !== null;
+const canExplain = () =>
+  explainingTab.value !== null && Boolean(shownRun.value?.progress.done) && scale.value !== null;
 
 // ---- the tabs
 

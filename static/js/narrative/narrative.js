@@ -3,8 +3,8 @@
 import { sentence, times, whole } from "../format.js";
 import { earlyEndOf, isActive, isTimedOutIn, rowsOf } from "./moment.js";
 import {
-  brokenOff, halting, lead, leftOff, practised, practising, reasonOf, ruleAfter, ruleBefore, ruleOfNone, verdict,
-  whyBrokenOff, whyPractised, whyPractising, workOf,
+  brokenOff, halting, lead, leaderOf, leftOff, practised, practising, reasonOf, ruleAfter, ruleBefore, ruleOfNone,
+  verdict, whyBrokenOff, whyPractised, whyPractising, workOf,
 } from "./sentences.js";
 
 /** @import { CurvePoint } from "../training.js" */
@@ -147,6 +147,7 @@ export function narrativeOf(context) {
     bar: entry.bar(facts),
     board: entry.board(facts),
     isOfRun: entry.isOfRun,
+    leader: facts.state === "racing" ? leaderOf(/** @type {Row[]} */ (rows)) : null,
     color: rows ? colorOfLanes(facts, rows) : colorOf(facts),
     note: noteOf(facts),
     chips: chipsOf(facts),

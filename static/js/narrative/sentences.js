@@ -29,6 +29,16 @@ export function lead(rows) {
   return `${ahead[0].title} leads ${rows.length > 1 ? `by ${distanceApart(leadIn(rows))}` : `with ${metres(best)}`}`;
 }
 
+/**
+ * The lane that is ahead of all others, or in front alone; null while they are level. @param {Row[]} rows
+ * @returns {{ lane: number, words: string } | null} `words`: "Greedy takes the lead, 0.12 m"
+ */
+export function leaderOf(rows) {
+  const [first] = rows.toSorted((a, b) => distanceOf(b) - distanceOf(a));
+  if (distanceOf(first) < LEVEL_M || areLevel(rows)) return null;
+  return { lane: first.lane, words: `${first.title} takes the lead, ${metres(distanceOf(first))}` };
+}
+
 /** The outcome of a race: "Greedy wins by 3 cm". @param {Row[]} rows */
 export function verdict(rows) {
   const winners = rows.filter(({ rank }) => rank === 1);
@@ -320,7 +330,7 @@ export function reasonOf(rows, tracks, { time_s, isPast }, happened) {
 }
 
 /**
- * What the winner did with its time: "It thought for 12 % of the time, and made 46 steps of 50."
+ * What the winner did with its time: "It thought 12 % of the time: 46 of 50 steps."
  * @param {Track | undefined} track of the winner
  * @param {number} time_s at which the race is ranked
  * @param {number} steps of each lane
@@ -331,5 +341,5 @@ export function workOf(track, time_s, steps) {
   const { thought, walked: walking } = timeSpent(track, time_s);
   if (thought + walking <= 0 || thought < LEAST_THOUGHT * (thought + walking)) return null;
   const share = percentage(thought / (thought + walking));
-  return `It thought for ${share} of the time, and made ${whole(made)} steps of ${whole(steps)}.`;
+  return `It thought ${share} of the time: ${whole(made)} of ${whole(steps)} steps.`;
 }
