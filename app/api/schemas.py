@@ -252,4 +252,6 @@ class StageBody(Body):
         ]
         | None
     ) = None
-    stay: Annotated[bool, Field(strict=True, description="keep the run that is on stage")] = False
+    stay: Annotated[bool, Field(strict=True, description="keep the run that is on the stage")] = (
+        False
+    )

@@ -13,7 +13,7 @@ from hexapods.shows.playhead import Playhead
 
 
 class Announcement(Answer):
-    """A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run."""
+    """A run that the stage will show again by itself; `PUT /stage` with `stay` keeps its own."""
 
     run_id: str
     in_s: Annotated[float, Ge(0)]
@@ -26,10 +26,11 @@ class StageView(Answer):
         phase: `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is
             at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
         sent_s: time of the server's clock when this was written [s]; only differences count.
-        version: of the frames of the run on stage, as of its replay; null for an empty stage.
+        version: of the frames of the run on the stage; null for an empty stage.
         playhead: the moment that is shown, now and later.
-        origin: why the run is on stage: it was `started`, a person has `chosen` it, the server
-            replays it (`automatic`), or it was shown last before the server's start (`restored`).
+        origin: why the run is on the stage: it was `started`, a person has `chosen` it, the server
+            shows it again (`automatic`), or it was shown last before the server's start
+            (`restored`).
     """
 
     run_id: str | None

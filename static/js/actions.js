@@ -10,7 +10,7 @@ import { count, listed, whole } from "./format.js";
 import { changeIfStillHere, linkTo, page, showAddress } from "./page-state.js";
 import { copy, toast } from "./page.js";
 import {
-  canPlay, isPlaying, isRaceRun, isStale, laneTables, matchingTable, myWork, shownRun, work,
+  canPlay, isPlaying, isRaceRun, isStale, laneTables, matchingTable, myWork, work,
 } from "./on-stage.js";
 import { isActive, isOperator, markAsMine, mayStart } from "./selectors.js";
 import {
@@ -370,9 +370,6 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
   const agents = lanes.map(({ agent }) => agent);
   return { ...practice, ...walk, ...Object.fromEntries(settingsOfLanes), race_steps: steps, lanes: agents };
 }
-
-/** @param {Run} run */
-export const isShown = (run) => shownRun.value?.id === run.id;
 
 /** Copy a link to what the page shows; where there is no clipboard, show it in the address bar. */
 export async function share() {

@@ -124,7 +124,7 @@ export interface AllowanceView {
   runs: string[];
 }
 /**
- * A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run.
+ * A run that the stage will show again by itself; `PUT /stage` with `stay` keeps its own.
  */
 export interface Announcement {
   run_id: string;
@@ -1926,7 +1926,7 @@ export interface StageView {
    */
   phase: "empty" | "live" | "decided" | "showing" | "ended";
   /**
-   * why the run is on stage: it was `started`, a person has `chosen` it, the server replays it (`automatic`), or it was shown last before the server's start (`restored`).
+   * why the run is on the stage: it was `started`, a person has `chosen` it, the server shows it again (`automatic`), or it was shown last before the server's start (`restored`).
    */
   origin: "none" | "started" | "chosen" | "automatic" | "restored";
   time_s: number;
@@ -1945,7 +1945,7 @@ export interface StageView {
    */
   sent_s: number;
   /**
-   * of the frames of the run on stage, as of its replay; null for an empty stage.
+   * of the frames of the run on the stage; null for an empty stage.
    */
   version: string | null;
   playhead: Playhead;

@@ -39,8 +39,8 @@ export const phase = computed(() => playback.value?.phase ?? "empty");
 export const isPlaying = computed(() =>
   playback.value !== null && playback.value.playing && !playback.value.ended && !isStale.value);
 
-/** Kind of the picture: live of a run that goes on, else a replay. */
-export const playbackName = computed(() => (isActive(shownRun.value) ? "picture" : "replay"));
+/** Whose picture this page shows: the stage, which is everyone's, or a replay of its own. */
+export const playbackName = computed(() => (isOwn.value ? "replay" : "stage"));
 
 /** Whether this page may play and seek: the common stage is the operators', a replay of its own is anybody's. */
 export const canPlay = computed(() => isOperator.value || isOwn.value);
@@ -316,7 +316,7 @@ function ofWork({ requested, current }) {
 /** @param {Run} run */
 function notShown(run) {
   if (!playback.value?.run_id || playback.value.run_id === run.id) return "";
-  return isToCome(run) ? ", shown next" : ", not on stage";
+  return isToCome(run) ? ", shown next" : ", not on the stage";
 }
 
 /** @param {Scene | null} now @returns {Progress | null} */

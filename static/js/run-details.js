@@ -2,9 +2,10 @@
 import { computed } from "@preact/signals";
 import { change, page } from "./page-state.js";
 import { isPhone } from "./page.js";
+import { byValue } from "./run-groups.js";
 import { listedRuns } from "./run-list.js";
 import { selected } from "./run-selection.js";
-import { byDifference, greedyOf } from "./run-words.js";
+import { greedyOf } from "./run-words.js";
 import { followRuns } from "./runs.js";
 import { damagedRuns, isGone, runs } from "./store.js";
 import { curveOf, followCurves } from "./training.js";
@@ -33,9 +34,9 @@ export const isOfSelection = computed(() => {
 export const isOpenedGone = computed(() =>
   page.opened.value !== null && opened.value === null && selected.value.length === 0 && isGone(page.opened.value));
 
-/** The runs whose details are shown: the opened run, else the first; several, by what differs, where selected. */
+/** The runs whose details are shown: the opened run, else the first; several, a sweep by its values, where selected. */
 export const subjects = computed(() => {
-  if (isOfSelection.value) return byDifference(selected.value);
+  if (isOfSelection.value) return byValue(selected.value);
   if (isOpenedGone.value) return [];
   const run = opened.value ?? selected.value[0] ?? listedRuns.value[0];
   return run ? [run] : [];

@@ -132,6 +132,22 @@ function groupOfSweep({ varied, members }) {
   return { key, title: titleOfSweep(first, varied), facts: commonInWords(all, varied), rows, isSweep: true };
 }
 
+/** Numbers by size; 0 for all else. @type {(a: unknown, b: unknown) => number} */
+const bySize = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : 0);
+
+/**
+ * Runs that are compared: those of one sweep by its values, all others in the order that they have.
+ * @param {AnyRun[]} runs
+ */
+export function byValue(runs) {
+  if (runs.some((run) => "damaged" in run)) return runs;
+  const [sweep] = sweepsOf(/** @type {Run[]} */ (runs));
+  if (sweep?.members.length !== runs.length) return runs;
+  const compare = (/** @type {Known} */ a, /** @type {Known} */ b) => sweep.varied
+    .map((name) => bySize(a.fields[name]?.value, b.fields[name]?.value)).find((difference) => difference !== 0) ?? 0;
+  return sweep.members.toSorted(compare).map(({ run }) => run);
+}
+
 /** @param {AnyRun[]} runs */
 function bySweep(runs) {
   const whole = runs.filter((run) => !("damaged" in run));

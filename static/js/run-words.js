@@ -144,21 +144,6 @@ export function commonFacts(all) {
   return fields.length ? commonInWords(fields, variedIn(fields)) : [];
 }
 
-/** Numbers by size; 0 for all else. @type {(a: unknown, b: unknown) => number} */
-const bySize = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : 0);
-
-/**
- * Runs that are compared, by the numbers in which they differ; those that differ in none keep their order.
- * @param {AnyRun[]} runs
- */
-export function byDifference(runs) {
-  const fields = fieldsOfAll(runs);
-  const varied = variedIn(fields);
-  const order = (/** @type {number} */ a, /** @type {number} */ b) =>
-    varied.map((name) => bySize(fields[a][name]?.value, fields[b][name]?.value)).find((difference) => difference) ?? 0;
-  return fields.length ? runs.map((_, n) => n).toSorted(order).map((n) => runs[n]) : runs;
-}
-
 /** Runs that differ in more have their own names. */
 const MAX_TOLD = 3;
 

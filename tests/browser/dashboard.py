@@ -77,9 +77,9 @@ class Dashboard:
         page.on("console", self._heard)
 
     def open(self, address: str) -> None:
-        """Open it, and wait until it is live and the stage has a picture, if it is to have one."""
+        """Open it, and wait until it is connected and has a picture, if it is to have one."""
         self.page.goto(address)
-        expect(self.connection).to_contain_text("live")
+        expect(self.connection).to_contain_text("connected")
         if self._has_3d:
             self.wait_for_stage()
 
@@ -110,7 +110,7 @@ class Dashboard:
 
     @property
     def connection(self) -> Locator:
-        """Whether the page is live, and how many watch; the presenter view hides it."""
+        """Whether the page is connected, and how many watch; the presenter view hides it."""
         return self.page.get_by_role("group", name="Connection", exact=True, include_hidden=True)
 
     @property

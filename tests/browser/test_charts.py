@@ -110,8 +110,8 @@ def reads_and_seeks(dashboard: Dashboard, race: Locator, end: float) -> None:
     assert time_s == pytest.approx(end / 4, rel=0.2)
     page.mouse.move(0, 0)
     expect(race).to_have_text("")
-    dashboard.button("Pause replay for everyone").click()
-    expect(dashboard.button("Play replay for everyone")).to_be_visible()
+    dashboard.button("Pause the stage").click()
+    expect(dashboard.button("Play the stage")).to_be_visible()
     # The axis keeps its length, so that one can go on from here as well.
     later_s = sought(page, lambda: race.click(position={"x": 0.9 * box["width"], "y": 40}))
     assert later_s == pytest.approx(0.9 * end, rel=0.1)
@@ -167,7 +167,7 @@ def answers_keys(dashboard: Dashboard, race: Locator) -> None:
     expect(race).to_have_text("")
     page.keyboard.press("?")
     help_dialog = page.get_by_role("dialog", name="Keys")
-    expect(help_dialog).to_contain_text("show that moment on stage")
+    expect(help_dialog).to_contain_text("show that moment on the stage")
     assert dashboard.violations() == []
     page.keyboard.press("Escape")
 

@@ -131,13 +131,13 @@ def test_the_robots_of_another_run_walk_along_as_ghosts(
     page.get_by_role("link", name="Replay A with B as ghost").click()
     expect(page).to_have_url(re.compile(rf"\?run={calm}&ghost={bold}$"))
     expect(dashboard.labels).to_contain_text(re.compile(r"Ghosts: Duel bold \(Sarsa −?0\.\d\d"))
-    dashboard.button("Pause replay").click()
+    dashboard.button("Pause your replay").click()
     expect(page).to_have_url(re.compile(rf"run={calm}&ghost={bold}&t="))
     assert dashboard.violations() == []
     page.goto(f"{shared_server.address}?run={calm}&ghost={calm}")
     alert = page.get_by_role("alert").filter(has_text="cannot be its own ghost")
     expect(alert).to_be_visible()
-    dashboard.button("Watch the stage").click()
+    dashboard.button("Back to the stage").click()
     assert "ghost=" not in page.url
     assert {complaint.split()[0] for complaint in dashboard.complaints} == {"422"}
     dashboard.complaints.clear()

@@ -48,7 +48,7 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     dashboard.complaints.clear()
 
     with serving(tmp_path, port):
-        expect(dashboard.connection).to_contain_text("live")
+        expect(dashboard.connection).to_contain_text("connected")
         expect(page.get_by_text("Reconnecting.")).to_have_count(0)
         dashboard.wait_for_stage()
         dashboard.complaints.clear()
@@ -78,7 +78,7 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
         page.expect_response("**/spectators.js") as loaded,
         serving(tmp_path, first.port, token="for-the-operator"),
     ):
-        expect(dashboard.connection).to_contain_text("live")
+        expect(dashboard.connection).to_contain_text("connected")
         assert loaded.value.ok
         expect(world.get_by_role("radio", name="Payload")).to_be_visible()
     dashboard.complaints.clear()
@@ -139,7 +139,7 @@ def test_where_streams_are_held_back_the_stage_is_followed_all_the_same(
         api.post("races", json=body).raise_for_status()
         shown = page.get_by_role("group", name="Shown run", exact=True)
         expect(shown).to_contain_text(re.compile(r"^Race: Greedy.*step \d+ of 30$"))
-        expect(dashboard.connection).to_contain_text("live")
+        expect(dashboard.connection).to_contain_text("connected")
         expect(page.get_by_text("Reconnecting")).to_have_count(0)
         # A command reaches the page within a few seconds.
         api.put("stage", json={"time_s": 1.0, "playing": False}).raise_for_status()

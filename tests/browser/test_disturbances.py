@@ -149,7 +149,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     branch = page.get_by_role("region", name="Disturb this race")
     expect(branch).to_contain_text(re.compile(r"From step [45]\d: as it was"))
     dashboard.moment.fill("1")
-    dashboard.button("Pause replay for everyone").click()
+    dashboard.button("Pause the stage").click()
     expect(branch).to_contain_text(re.compile(r"From step [12]?\d: as it was"))
     step_number = step_of(branch)
     start = dashboard.button("Race on from here")

@@ -51,7 +51,7 @@ def test_train_race_scrub_and_experiment(dashboard: Dashboard, server: Serving) 
     tab_to(page, dashboard.primary)
     page.keyboard.press("Enter")
     expect(dashboard.headline).to_have_text(re.compile("wins|tie"))
-    expect(dashboard.button("Play again for everyone")).to_be_visible()
+    expect(dashboard.button("Play the stage again")).to_be_visible()
 
     seek = dashboard.moment
     tab_to(page, seek)

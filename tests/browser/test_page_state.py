@@ -121,7 +121,7 @@ def test_a_link_to_a_run_that_is_not_says_so_and_speaks_of_no_other(
         # The page asks for the run, its replay and its scene.
         dashboard.eventually(lambda: len(dashboard.complaints) == 3, "three answers of 404")
         dashboard.complaints.clear()
-        dashboard.button("Watch the stage").click()
+        dashboard.button("Back to the stage").click()
         expect(alert).to_have_count(0)
         expect(dashboard.standings).to_be_visible()
         assert "run=" not in page.url

@@ -46,11 +46,11 @@ def taps_of_a_spectator(dashboard: Dashboard) -> None:
     assert shown.controls <= budget.controls
     assert shown.words <= budget.words
     # One: a replay of one's own. The stage stays where it is while the page is read.
-    dashboard.button("Replay on this page").tap()
+    dashboard.button("Replay").tap()
     expect(page.get_by_role("slider", name="Moment of your replay")).to_be_visible()
     stage = page.get_by_role("region", name="Stage", exact=True)
     expect(stage).to_be_in_viewport(ratio=1)
-    dashboard.button("Live").tap()
+    dashboard.button("Back to the stage").tap()
     # At most two: the step, explained.
     page.get_by_role("tab", name="Why").tap()
     expect(page.get_by_role("region", name="Explanation")).to_contain_text("Why this move")

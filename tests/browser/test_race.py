@@ -43,7 +43,7 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard.button("Keep watching").click()
     slowest = dashboard.rows.filter(has_text="Two-step")
     expect(slowest.get_by_role("cell", name="468", exact=True)).to_be_visible()
-    expect(dashboard.button("Play again for everyone")).to_be_visible()
+    expect(dashboard.button("Play the stage again")).to_be_visible()
     end_s = float(dashboard.moment.get_attribute("max") or 0)
     expect(slowest).to_contain_text(f"3 steps in 0:{int(end_s + 1e-3):02}")
     check_crosshairs(dashboard)
@@ -209,10 +209,10 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     assert other.complaints == []
     other.page.close()
 
-    expect(dashboard.button("Pause picture for everyone")).to_be_visible()
+    expect(dashboard.button("Pause the stage")).to_be_visible()
     dashboard.button("Pause training").click()
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
-    expect(dashboard.button("Play picture for everyone")).to_be_visible()
+    expect(dashboard.button("Play the stage")).to_be_visible()
     dashboard.button("Resume training").click()
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
 
@@ -306,7 +306,7 @@ def test_two_operators_and_one_stage(
         other.button("Train, don’t race").click()
         expect(other.page.get_by_text("The stage shows another run")).to_be_visible()
         assert other.get("/api/v1/stage")["run_id"] == run_on_stage
-        other.button("Show on stage").click()
+        other.button("Show on the stage").click()
         expect(other.page.get_by_text("The stage shows another run")).to_have_count(0)
         assert other.get("/api/v1/stage")["run_id"] != run_on_stage
         assert other.complaints == []

@@ -39,7 +39,7 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
         common = api.put("stage", json={"run_id": race["id"], "playing": False}).json()
 
         dashboard.open(server.link(run=race["id"], t=2.5, depth="try", tab="board"))
-        expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
+        expect(dashboard.labels.get_by_text("Your replay", exact=True)).to_be_visible()
         timeline = page.get_by_role("slider", name="Moment of your replay")
         expect(timeline).to_have_value("2.5")
         dashboard.eventually(
@@ -70,7 +70,7 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
         expect(page).to_have_url(re.compile(rf"run={race['id']}&t={time_out:.1f}"))
         page.get_by_role("switch", name="End at time-out").uncheck()
         page.get_by_role("combobox", name="Speed").select_option("0.5")
-        dashboard.button("Play replay").click()
+        dashboard.button("Play your replay").click()
         dashboard.eventually(lambda: shown_time(page) > time_out + 0.3, "it plays")
         expect(page).to_have_url(re.compile(rf"\?run={race['id']}&end=all&depth=study&tab=board"))
         page.get_by_role("combobox", name="Clock").select_option("free")
@@ -81,16 +81,16 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
         assert {name: after[name] for name in ("run_id", "time_s", "playing", "clock")} == {
             name: common[name] for name in ("run_id", "time_s", "playing", "clock")
         }
-        dashboard.button("Live").click()
+        dashboard.button("Back to the stage").click()
         expect(dashboard.labels.get_by_text("paused")).to_be_visible()
         expect(page).not_to_have_url(re.compile("run="))
         page.go_back()
-        expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
-        dashboard.button("Live").click()
-        dashboard.button("Replay on this page").click()
+        expect(dashboard.labels.get_by_text("Your replay", exact=True)).to_be_visible()
+        dashboard.button("Back to the stage").click()
+        dashboard.button("Replay").click()
         expect(timeline).to_be_enabled()
         # The bar of the stage is the operators'; whoever touches it goes on by themselves.
-        dashboard.button("Live").click()
+        dashboard.button("Back to the stage").click()
         dashboard.moment.fill("1")
         dashboard.eventually(lambda: shown_time(page) >= 1, "a replay from there")
         assert api.get("stage").json()["time_s"] == common["time_s"]

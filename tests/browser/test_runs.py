@@ -54,7 +54,7 @@ def test_runs_older_than_a_page_are_found_and_shown(
     expect(rows).to_have_count(1)
     expect(rows).to_contain_text("Old race")
     page.get_by_role("link", name="Replay").click()
-    expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
+    expect(dashboard.labels.get_by_text("Your replay", exact=True)).to_be_visible()
     page.go_back()
     expect(rows).to_have_count(1)
     page.get_by_label("More for this race").click()

@@ -48,7 +48,7 @@ def test_a_spectator_reads_the_settings_tries_others_and_replays(
         # A link with settings opens them; back on stage are those of the race.
         dashboard.open(server.link(alpha=0.9, depth="study", tab="train"))
         expect(alpha_of(dashboard)).to_have_value("0.9")
-        dashboard.button("Back to the settings on stage").click()
+        dashboard.button("Back to the settings of the stage").click()
         expect(alpha_of(dashboard)).to_have_value("0.7")
         expect(dashboard.page).not_to_have_url(re.compile("alpha"))
         assert {race["id"]} == {run["id"] for run in api.get("races").json()["items"]}
@@ -60,7 +60,7 @@ def begin_a_replay_with_space(dashboard: Dashboard) -> None:
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("Space")
     expect(page).to_have_url(re.compile(r"[?&]run="))
-    dashboard.button("Live").click()
+    dashboard.button("Back to the stage").click()
     expect(page).not_to_have_url(re.compile(r"[?&]run="))
 
 
@@ -99,12 +99,12 @@ def replay_explain_and_download(dashboard: Dashboard, race_id: str) -> None:
     """Replay, explain and download as a spectator, by buttons and on this page only."""
     page = dashboard.page
     region = page.get_by_role("region", name="You are watching")
-    region.get_by_role("button", name="Replay it here").click()
+    region.get_by_role("button", name="Replay").click()
     expect(page).to_have_url(re.compile(f"run={race_id}"))
     expect(dashboard.button("One robot step on")).to_be_visible()
     explained = dashboard.open_tab("Why")
     expect(explained.get_by_role("textbox", name="Step", exact=True)).to_be_in_viewport()
-    region.get_by_role("button", name="Back to the stage").click()
+    dashboard.button("Back to the stage").click()
     expect(page).not_to_have_url(re.compile("run="))
     region.get_by_text("Download it").click()
     with page.expect_download() as saved:

@@ -310,8 +310,7 @@ test("what can be done, chips and announcements follow from the run's state and 
     assert.equal(words[0], scene.label);
     assert.equal(words.some((text) => text.endsWith(" paused")), !stage.ended);
     if (words.includes("Time-out: photo finish")) assert.equal(state, "timed out");
-    assert.equal(play.label, stage.ended ? "Play again for everyone"
-      : `Play ${run.state === "running" ? "picture" : "replay"} for everyone`);
+    assert.equal(play.label, stage.ended ? "Play the stage again" : "Play the stage");
     const isOutcome = state === "timed out" || (isEarlyEnd && ["left off", "broken off"].includes(state));
     assert.equal(announcement !== "", isOutcome || run.state === "failed", `${run.name}: ${announcement}`);
   }

@@ -49,7 +49,7 @@ test("work that is not on stage is said not to be", () => {
   const [run, other] = [practice(), practice({ state: "finished", progress: { done: 500, total: 500 } })];
   markAsMine(run.id);
   snapshot([run, other], showing(other, 20, { phase: "showing", origin: "chosen" }));
-  assert.equal(progress.value?.label, "Practising, 312 of 500 steps, not on stage");
+  assert.equal(progress.value?.label, "Practising, 312 of 500 steps, not on the stage");
   assert.equal(offStage.value?.id, run.id);
 });
 

@@ -4,9 +4,9 @@ import { beforeEach, test } from "node:test";
 import { shortTime } from "../../static/js/format.js";
 import { COLUMNS, shownColumns, toggleColumn } from "../../static/js/run-columns.js";
 import { change, page, read, write } from "../../static/js/page-state.js";
-import { groupRuns } from "../../static/js/run-groups.js";
+import { byValue, groupRuns } from "../../static/js/run-groups.js";
 import { grouping, listedRuns, runGroups, setGrouping } from "../../static/js/run-list.js";
-import { byDifference, factsOf, namesAmong, outcomeInWords, shareOf, withResult } from "../../static/js/run-words.js";
+import { factsOf, namesAmong, outcomeInWords, shareOf, withResult } from "../../static/js/run-words.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -174,13 +174,15 @@ test("names among others are short, and none twice", () => {
     "Slope 8° from step 10");
 });
 
-test("what is compared is in the order of the numbers that differ, and else as it was selected", () => {
+test("a sweep is compared by its values, all else as it was selected", () => {
   applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator" });
   const [high, low, middle] = [0.5, 0.1, 0.3].map((alpha) => trained({ settings: { alpha } }));
-  assert.deepEqual(byDifference([high, low, middle]), [low, middle, high]);
-  assert.deepEqual(byDifference([high, raced(), low]).length, 3);
-  const [slope, flat] = [trained({ gait: "wave" }), trained()];
-  assert.deepEqual(byDifference([slope, flat]), [slope, flat]);
+  assert.deepEqual(byValue([high, low, middle]), [low, middle, high]);
+  assert.deepEqual(byValue([high, raced(), low]).length, 3);
+  const [wave, tripod] = [trained({ gait: "wave" }), trained()];
+  assert.deepEqual(byValue([wave, tripod]), [wave, tripod]);
+  const both = trained({ steps: 20, settings: { alpha: 0.1 } });
+  assert.deepEqual(byValue([high, both]), [high, both], "in two settings, which is no sweep");
   const damaged = /** @type {any} */ ({ id: "bad", kind: null, name: null, created_at: null, damaged: "lost" });
-  assert.deepEqual(byDifference([high, damaged, low]), [high, damaged, low]);
+  assert.deepEqual(byValue([high, damaged, low]), [high, damaged, low]);
 });

@@ -81,14 +81,14 @@ test("an answer does not undo the events that overtook it", async () => {
   assert.equal(stage.value?.run_id, run.id);
 });
 
-test("a stage that shows its run's end does not play, and plays a replay unless its run is live", () => {
+test("a stage that shows its run's end does not play; it is the stage whether its run is computed or recorded", () => {
   const [done, live] = [makeRun({}), makeRun({ state: "running" })];
   show({ runs: [done, live], stage: { ...STAGE, run_id: done.id, ended: false } });
-  assert.deepEqual([isPlaying.value, playbackName.value], [true, "replay"]);
+  assert.deepEqual([isPlaying.value, playbackName.value], [true, "stage"]);
   applyEvent("stage", { ...STAGE, run_id: done.id, ended: true });
   assert.equal(isPlaying.value, false);
   applyEvent("stage", { ...STAGE, run_id: live.id, ended: false });
-  assert.deepEqual([isPlaying.value, playbackName.value], [true, "picture"]);
+  assert.deepEqual([isPlaying.value, playbackName.value], [true, "stage"]);
 });
 
 test("a deleted run is marked before its event comes, until it is imported again", () => {

@@ -195,7 +195,7 @@ def test_a_spectators_page_offers_nothing_that_would_fail(
     assert set(changing) <= {f"POST {address}{path}" for path in (WHAT_IF, PREVIEW)}
     verbs = ("Train ", "Race", "Stop", "Pause", "Resume", "Delete", "Show on", "Start", "Go on")
     # A replay that no other page sees may be held by anybody.
-    viewer_buttons = {"Races", "Pause replay"}
+    viewer_buttons = {"Races", "Pause in a replay", "Pause your replay"}
     assert not [
         words for words in pressed if words not in viewer_buttons and words.startswith(verbs)
     ]

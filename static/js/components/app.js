@@ -200,12 +200,12 @@ function Row({ row, item }) {
 function Connection() {
   // A page without access is not about to be connected.
   const state = isLockedOut.value ? "no access" : connection.value;
-  const watching = viewers.value ? html`${viewers.value}<span class="roomy"> watching</span>` : "live";
+  const watching = viewers.value ? html`${viewers.value}<span class="roomy"> watching</span>` : "connected";
   return html`
     <p class=${`live ${state.replace(" ", "-")}`} role="group" aria-label="Connection">
       <span class="dot" aria-hidden="true"></span>
       ${state === "live"
-        ? html`<span><span class="sr-only">live, </span>${watching}</span>`
+        ? html`<span><span class="sr-only">connected, </span>${watching}</span>`
         // On a phone it would push the menu over the edge; what is lost is told where it is shown.
         : html`<span class=${isPhone.value && !isLockedOut.value ? "sr-only" : ""}>${state}</span>`}
     </p>

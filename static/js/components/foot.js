@@ -158,7 +158,7 @@ function OffStage() {
   return html`
     <div class="notice">
       <p>The stage shows another run; your ${run.kind} goes on without a picture.</p>
-      <button class="secondary" onClick=${() => showOnStage(run)}>Show on stage</button>
+      <button class="secondary" onClick=${() => showOnStage(run)}>Show on the stage</button>
       <${Problem} at=${run.id} />
     </div>
   `;
@@ -195,7 +195,7 @@ function Interrupted() {
   const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
   return html`
     <div class="notice">
-      <p><b>${sentence(run.kind)} “${run.name}” was interrupted${where}; it is not on stage.</b> ${run.error}</p>
+      <p><b>${sentence(run.kind)} “${run.name}” was interrupted${where}; it is not on the stage.</b> ${run.error}</p>
       <${ResumeButton} run=${run} />
     </div>
   `;
@@ -216,7 +216,7 @@ function Spectator() {
           <p class="dim">Only “What if” tries your settings; the stage goes on as it is.</p>
           <div class="row">
             <button class="secondary compact" onClick=${() => (page.form.value = new URLSearchParams())}>
-              Back to the settings on stage
+              Back to the settings of the stage
             </button>
           </div>
         `}

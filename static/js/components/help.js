@@ -8,8 +8,8 @@ import { explainingTab } from "../workspace.js";
 
 /** [key, what it does] */
 const pageKeys = () => [
-  ["Space", "play and pause; the training on stage too"],
-  [", .", "one robot step back or on, in your own replay"],
+  ["Space", "play and pause; the training on the stage too"],
+  [", .", "one robot step back or on, in your replay"],
   ["[ ]", "to what happened before or next"],
   ["Home End", "to the start, and to what is computed"],
   ...(explainingTab.value ? [["E", "explain this step"]] : []),
@@ -25,7 +25,7 @@ const pageKeys = () => [
 /** Of a chart that has the focus. */
 const CHART_KEYS = [
   ["← →", "read the values, in all charts over the same axis; or point, or touch"],
-  ["Enter", "show that moment on stage, for those who may; or click"],
+  ["Enter", "show that moment on the stage, for those who may; or click"],
   ["+ −", "zoom in and out; or drag, or move two fingers"],
   ["0", "show all; or click twice"],
 ];

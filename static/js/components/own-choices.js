@@ -1,7 +1,7 @@
 // What a spectator can do on their own page, while the stage goes on for all.
 import { downloads } from "../files.js";
 import { tryOwnSettings } from "../form.js";
-import { closeReplay, isOwn, openReplay, position } from "../player.js";
+import { isOwn, openReplay, position } from "../player.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive, isWalk } from "../selectors.js";
 import { isAway } from "../store.js";
@@ -15,12 +15,9 @@ export function OwnChoices() {
   const canReplay = run !== null && isWalk(run) && Boolean(run?.progress?.done);
   return html`
     <div class="own-choices">
-      ${isOwn.value && html`
-        <button class="secondary compact" onClick=${closeReplay}>Back to the stage</button>
-      `}
       ${!isOwn.value && run && canReplay && html`
         <button class="secondary compact" disabled=${isAway.value} onClick=${() => replay(run)}
-          title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
+          title="Play, seek and go step by step for yourself"><${Icon} name="replay" />Replay</button>
       `}
       <button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>
     </div>

@@ -140,7 +140,7 @@ const canPick = () => isAtLeast("try") && !isProjected.peek() && !isStill.peek()
 const ReplayProblem = () => replayProblem.value && html`
   <div class="replay-problem" role="alert">
     <p>${replayProblem.value}</p>
-    <button class="secondary" onClick=${closeReplay}>Watch the stage</button>
+    <button class="secondary" onClick=${closeReplay}>Back to the stage</button>
   </div>
 `;
 
@@ -181,7 +181,7 @@ const DecidedNote = () => isDecided.value && !isStale.value && isAtLeast("try") 
     <button class="secondary compact" onClick=${keepWatching} title="Some robots still walk">Keep watching</button>
   `;
 
-/** The replay that begins by itself. */
+/** The race that the stage shows again by itself. */
 function AnnouncementNote() {
   const announced = isAway.value ? null : playback.value?.announced ?? null;
   const [left, setLeft] = useState(0);
@@ -195,7 +195,7 @@ function AnnouncementNote() {
   }, [announced]);
   if (!announced) return null;
   const name = runs.value.get(announced.run_id)?.name ?? "a race";
-  const what = announced.run_id === playback.value?.run_id ? "the same again" : `a replay of ${name}`;
+  const what = announced.run_id === playback.value?.run_id ? "the same again" : `${name}, again`;
   return html`
     <div class="stage-note">
       <p role="status">Next: ${what}</p>

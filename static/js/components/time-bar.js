@@ -5,9 +5,9 @@ import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone, isProjected } from "../page.js";
-import { closeReplay, isOwn, openReplay, playback, position, stepReplay } from "../player.js";
+import { closeReplay, isOwn, openReplay, playback, position, replayProblem, stepReplay } from "../player.js";
 import { percent, shareOf, ticks } from "../scale.js";
-import { isOperator, isGuest } from "../selectors.js";
+import { isOperator } from "../selectors.js";
 import { isAway, scene } from "../store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, toggleTime,
@@ -59,16 +59,17 @@ function ReplayButton() {
   if (!run?.progress?.done || !(isAtLeast("try") || isPhone.value)) return null;
   const open = () => openReplay(run.id, { time_s: position.peek(), clock: clock.value });
   return html`
-    <button class="quiet square" aria-label="Replay on this page" disabled=${isStale.value} onClick=${open}
-      title="Replay: play and seek on this page only; the stage goes on for all">
+    <button class="quiet square" aria-label="Replay" disabled=${isStale.value} onClick=${open}
+      title="Replay: play and seek for yourself; the stage goes on for everyone">
       <${Icon} name="replay" />
     </button>
   `;
 }
 
-const BackToStage = () => html`
-  <button class="secondary compact to-stage" onClick=${closeReplay} title="Watch the stage with everybody">
-    <span class="dot" aria-hidden="true"></span>${isGuest.value ? "Stage" : "Live"}
+/** Where there is no replay, the note that says why has it. */
+const BackToStage = () => !replayProblem.value && html`
+  <button class="secondary compact to-stage" onClick=${closeReplay} title="Watch what everyone sees">
+    <span class="dot" aria-hidden="true"></span>Back to the stage
   </button>
 `;
 
@@ -246,7 +247,7 @@ function Speed() {
   /** @param {Changed} event */
   const onChange = ({ target: { value } }) => setStage({ speed: value === "time-lapse" ? value : Number(value) });
   return html`
-    <select name="speed" aria-label="Speed" title=${isOwn.value ? "Speed on this page" : "Speed for every page"}
+    <select name="speed" aria-label="Speed" title=${isOwn.value ? "Speed of your replay" : "Speed of the stage"}
       disabled=${!isOwn.value && (!isOperator.value || isAway.value)} onChange=${onChange}>
       ${choices.map(([choice, words]) => html`
         <option value=${String(choice)} selected=${String(choice) === String(speed)}>${words}</option>

@@ -37,4 +37,5 @@ function Steering() {
 }
 
 /** @param {{ shown: number | null }} state */
-const seenStep = ({ shown }) => (shown === null ? "; it is not on stage" : `; the picture shows step ${whole(shown)}`);
+const seenStep = ({ shown }) =>
+  (shown === null ? "; it is not on the stage" : `; the picture shows step ${whole(shown)}`);

@@ -9,7 +9,7 @@ import {
 } from "../disturbances.js";
 import { listed } from "../format.js";
 import { azimuthsOf } from "../robots.js";
-import { heldRace, liveTraining, stepShown } from "../on-stage.js";
+import { heldRace, liveTraining, playbackName, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
@@ -383,7 +383,9 @@ function BranchOf({ race }) {
           Undo all
         </button>
       <//>
-      <p class="sentence">Until then both races are the same. Hold the replay elsewhere for another step.</p>
+      <p class="sentence">
+        Until then both races are the same. Hold the ${playbackName.value} elsewhere for another step.
+      </p>
       <${Problem} at="branch" />
     </section>
   `;

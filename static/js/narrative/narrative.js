@@ -77,7 +77,7 @@ const TABLE = {
   "loading": {
     headline: ({ isAway }) => (isAway ? "Waiting for the server" : "Loading…"),
     bar: (facts) => (facts.isOwn ? loading(facts) : "Its first steps are being computed."),
-    board: () => "Loading the run on stage…",
+    board: () => "Loading the run on the stage…",
   },
   "lost": {
     headline: () => "No run is shown", bar: () => "No run is shown.",
@@ -284,10 +284,10 @@ const PHASES = {
 /** @param {Facts} facts @returns {Chip[]} */
 function replayOf(facts) {
   const { scene, isOwn, isOfGuest, isAway, isBuffering, problem } = facts;
-  if (!isOwn) return scene?.replay ? [{ kind: "", words: "Replay" }] : [];
+  if (!isOwn) return scene?.replay ? [{ kind: "", words: "Recorded" }] : [];
   if (problem) return [];
   // While the server is away a note says so.
-  const words = isBuffering && !isAway ? loading(facts) : isOfGuest ? "Your robot" : "Your own replay";
+  const words = isBuffering && !isAway ? loading(facts) : isOfGuest ? "Your robot" : "Your replay";
   return [{ kind: "accent", words }];
 }
 
@@ -297,14 +297,14 @@ function nothing(facts) {
   return facts.problem ? "No run is shown" : loading(facts);
 }
 
-/** Kind of the picture: live of a run that goes on, else a replay. @param {Pick<Known, "run">} known */
-const playback = ({ run }) => (isActive(run) ? "picture" : "replay");
+/** Whose picture this page shows: everyone's, or one of its own. @param {Facts} facts */
+const pictureName = ({ isOwn }) => (isOwn ? "replay" : "stage");
 
 /** @param {Facts} facts @returns {Chip[]} */
 function speedOf(facts) {
   const { scene, stage, isAway, isOwn, isBuffering } = facts;
   if (!scene || scene.kind === "idle" || stage?.ended) return [];
-  if (stage?.playing === false) return [{ kind: "", words: `${sentence(playback(facts))} paused` }];
+  if (stage?.playing === false) return [{ kind: "", words: `${sentence(pictureName(facts))} paused` }];
   const isStill = (isAway && !isOwn) || isBuffering || !(scene.shown_speed > 0);
   return isStill ? [] : [{ kind: "speed", words: times(scene.shown_speed) }];
 }
@@ -313,7 +313,8 @@ function speedOf(facts) {
 function playLabel(facts) {
   const { stage, isAway, isOwn, canPlay } = facts;
   const isPlaying = Boolean(stage?.playing && !stage.ended && (!isAway || isOwn));
-  const whose = canPlay && !isOwn ? " for everyone" : "";
-  const label = stage?.ended ? "Play again" : `${isPlaying ? "Pause" : "Play"} ${playback(facts)}`;
-  return { isPlaying, label: `${label}${whose}` };
+  // Who may not play the stage begins a replay with it.
+  const what = isOwn ? "your replay" : canPlay ? "the stage" : "in a replay";
+  const again = stage?.ended ? " again" : "";
+  return { isPlaying, label: `${isPlaying ? "Pause" : "Play"} ${what}${again}` };
 }

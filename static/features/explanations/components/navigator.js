@@ -79,7 +79,11 @@ function ShowOnStage({ step }) {
     setStage({ time_s: ((step - 1) * duration_s) / lanes[0].steps, playing: false });
     followStage();
   };
-  return html`<button class="secondary compact" onClick=${seek}><${Icon} name="play" /> Show it on the stage</button>`;
+  return html`
+    <button class="secondary compact" onClick=${seek}>
+      <${Icon} name="play" /> Show ${isOwn.value ? "in the replay" : "on the stage"}
+    </button>
+  `;
 }
 
 // ---- an answer that is not there

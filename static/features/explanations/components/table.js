@@ -17,7 +17,7 @@ import { SideBySide } from "./side-by-side.js";
 export function Table() {
   useMoment();
   const at = moment.value;
-  if (!at) return html`<p class="dim">When a learner is on stage, the values of all its states are shown here.</p>`;
+  if (!at) return html`<p class="dim">When a learner is on the stage, the values of all its states are shown here.</p>`;
   return html`
     <div class="table-tab">
       <${Navigator} at=${at} />

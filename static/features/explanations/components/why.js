@@ -22,7 +22,7 @@ export function Why() {
     moveTold.value = step ? wordsOf(step) : at && { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
   }, [step, at?.step]);
   useEffect(() => () => (moveTold.value = null), []);
-  if (!at) return html`<p class="dim">Once a run is on stage, each of its steps is explained here.</p>`;
+  if (!at) return html`<p class="dim">Once a run is on the stage, each of its steps is explained here.</p>`;
   const { error, again } = explanation.value;
   return html`
     <section class="why-tab" aria-label="Explanation" aria-busy=${step && step.step !== at.step ? "true" : "false"}>

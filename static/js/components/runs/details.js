@@ -1,5 +1,5 @@
 // The details beside the list: of one run, or of all that are selected.
-import { pending, resumeRun, isShown, showOnStage } from "../../actions.js";
+import { pending, resumeRun, showOnStage } from "../../actions.js";
 import { kindOf, Slot } from "../../features.js";
 import { isPhone } from "../../page.js";
 import { addressOf } from "../../page-state.js";
@@ -99,9 +99,7 @@ function Foot({ run }) {
         `}
         ${isWalk(run) && isOperator.value && html`
           <button class="secondary" disabled=${isPending || run.state === "queued"}
-            onClick=${() => showOnStage(run)} title="Show it on the stage, to everybody">
-            ${isShown(run) ? "On stage" : "Show"}
-          </button>
+            onClick=${() => showOnStage(run)} title="Everyone sees it">Show on the stage</button>
         `}
         <${Slot} name="actions on runs" runs=${[run]} />
       </div>

@@ -36,7 +36,7 @@ def visit(dashboard: Dashboard, server: Serving, **form: object) -> None:
     """The view of experiments, with this form; the 3D stage is not waited for."""
     page = dashboard.page
     page.goto(f"{server.address}#experiments?{urlencode(form)}")
-    expect(dashboard.connection).to_contain_text("live")
+    expect(dashboard.connection).to_contain_text("connected")
     expect(page.get_by_role("heading", name="Experiments", exact=True)).to_be_visible()
 
 
