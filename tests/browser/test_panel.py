@@ -12,6 +12,8 @@ from tests.browser.test_workspace import PRACTICE, RACE
 
 pytestmark = pytest.mark.timeout(300)
 
+LEAST_CHART = {1920: (360, 220), 1440: (360, 220), 1280: (320, 220)}
+"""Least width and height of what is plotted, by the width of the window [px]."""
 WIDTHS: list[ViewportSize] = [
     {"width": 1920, "height": 1080},
     {"width": 1440, "height": 900},
@@ -99,3 +101,42 @@ def test_tabs_never_move(dashboard: Dashboard, server: Serving) -> None:
             expect(dashboard.standings).to_be_visible()
             assert heads(dashboard) == first, moment
         expect(dashboard.reason).to_be_visible()
+
+
+def plotted(dashboard: Dashboard, selector: str) -> tuple[float, float]:
+    """Return width and height from the first to the last that is plotted [px]."""
+    expect(dashboard.page.locator(selector).first).to_be_visible()
+    boxes = [box for one in dashboard.page.locator(selector).all() if (box := one.bounding_box())]
+    top, bottom = min(box["y"] for box in boxes), max(box["y"] + box["height"] for box in boxes)
+    return min(box["width"] for box in boxes), bottom - top
+
+
+def test_charts_fill_the_panel_with_what_there_is(dashboard: Dashboard, server: Serving) -> None:
+    with server.api() as api:
+        race = finished(api, "races", RACE)
+        hold(api, race, 5.0)
+    small = dict[str, tuple[float, float]]()
+    dashboard.open(server.link(depth="study"))
+    for size in WIDTHS[:3]:
+        dashboard.page.set_viewport_size(size)
+        for title, selector in {
+            "Board": ".crosshair",
+            "Train": ".crosshair",
+            "Gait": ".walk-plot",
+        }.items():
+            dashboard.open_tab(title)
+            width, height = plotted(dashboard, selector)
+            least_width, least_height = LEAST_CHART[size["width"]]
+            if width < least_width or height < least_height:
+                small[f"{title} at {size['width']}"] = (width, height)
+    assert small == {}
+
+    # Of a race of 90 s five are shown, and of 0.45 m to the finish line 0.11.
+    dashboard.open_tab("Board")
+    chart = dashboard.page.get_by_role("slider", name="Values of the race")
+    seconds = chart.locator("..").locator("svg > text:not([text-anchor], .line-label)")
+    assert float(seconds.all_text_contents()[-1]) <= 8
+    axis = chart.locator("..").locator("svg > text[text-anchor=end]").all_text_contents()
+    numbers = [float(text) for text in axis if re.fullmatch(r"\d\.\d+", text)]
+    assert 0.1 <= max(numbers) < 0.2
+    assert "distance, m" in chart.locator("..").inner_text()

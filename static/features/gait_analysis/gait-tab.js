@@ -252,7 +252,7 @@ function Line({ series: { name }, lines: { lines, low, high, range }, views, isA
   const cursors = shown.filter(({ view }) => view.now !== null).slice(0, isAround ? 1 : shown.length);
   return html`
     <div class="walk-row">
-      <p class="walk-name">${name}<br /><span class="dim">${range}</span></p>
+      <p class="walk-name">${name} <span class="dim">${range}</span></p>
       <div class="walk-plot line" role="img" aria-label=${`${name}: ${lines.map(({ words }) => words).join(", ")}`}>
         ${shown.map(({ index, color, view, path }) => html`
           <svg key=${index} viewBox=${`${view.low} ${-high} ${view.high - view.low} ${high - low}`}

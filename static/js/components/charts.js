@@ -17,11 +17,12 @@ import { html, useWidth } from "./elements.js";
 
 // ---- lines
 
-const HEIGHT = 216;
-const TOP_PX = 20;
+/** Least height of the plotting area, and for a wide picture its share of the width up to the largest [px]. */
+const PLOT = { least: 220, share: 0.56, most: 320 };
+const TOP_PX = 31;
 const BOTTOM_PX = 38;
 const DOT_PX = 3;
-const TICK_GAP_PX = 8;
+const TICK_GAP_PX = 6;
 const TICK_PX = 14;
 const REGULAR = 400;
 /** Narrower charts have fewer ticks. */
@@ -35,8 +36,10 @@ const MAX_SEEDS = 200;
  * @param {object} props
  * @param {string} props.name "the learning curve"
  * @param {string} props.label what the chart shows, in a sentence
- * @param {{ axis: string, min?: number, max: number, unit: string, text: (x: number) => string }} props.x
- * @param {{ min?: number, max: number, unit: string, text: (y: number) => string }} props.y
+ * @param {{ axis: string, min?: number, max: number, unit: string, text: (x: number) => string }} props.x its `unit` is
+ *   the title of the axis: "race time, s"
+ * @param {{ min?: number, max: number, unit: string, text: (y: number) => string, title?: string }} props.y its `title`
+ *   is that of the axis, "distance, m"; without one it is the unit
  * @param {Line[]} props.lines
  * @param {Mark[]} [props.marks]
  * @param {number[]} props.xs where the crosshair stops: the rows of the table
@@ -55,7 +58,7 @@ export function Chart(props) {
   const part = zoom ? within(zoom, whole) : whole;
   /** @type {[number, number]} */
   const all = [y.min ?? 0, y.max];
-  const frame = frameOf(width, { y, lines, part, values: zoom ? valuesIn(lines, part, all) : all });
+  const frame = frameOf(width, { lines, part, values: zoom ? valuesIn(lines, part, all) : all });
   const chart = { ...props, marks };
   const axis = { axis: x.axis, xs, whole, part, now, seek, reach };
   const inset = {
@@ -67,7 +70,7 @@ export function Chart(props) {
   };
   return html`
     <div class="chart-frame" onFocusOut=${onFocusOut}>
-      <div class="chart-picture" ref=${host} style=${{ height: `${scale * HEIGHT}px` }}>
+      <div class="chart-picture" ref=${host} style=${{ height: `${scale * frame.height}px` }}>
         ${width > 0 && html`
           <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} scale=${scale} />
           ${canRead() && html`
@@ -101,29 +104,29 @@ const isFull = () => chartDepth.value === "study";
 
 /**
  * @param {number} width
- * @param {{ y: YAxis, lines: Line[], part: Range, values: Range }} other
+ * @param {{ lines: Line[], part: Range, values: Range }} other
  * @returns {TickedFrame}
  */
-function frameOf(width, { y, lines, part: [from, to], values: [least, most] }) {
-  const yTicks = withOwnText(ticks(most, 4, least), y.text);
-  const left = Math.ceil(Math.max(0, ...yTicks.map((tick) => widthOf(y.text(tick), REGULAR)))) + TICK_GAP_PX + 2;
-  const right = Math.max(left + 1, width - roomFor(lines));
-  const bottom = HEIGHT - BOTTOM_PX;
+function frameOf(width, { lines, part: [from, to], values: [least, most] }) {
+  const yTicks = ticks(most, 4, least);
+  const left = Math.ceil(Math.max(0, ...tickTexts(yTicks).map((text) => widthOf(text, REGULAR)))) + TICK_GAP_PX;
+  const right = Math.max(left + 1, width - roomFor(lines, width));
+  const bottom = TOP_PX + Math.round(Math.max(PLOT.least, Math.min(PLOT.share * width, PLOT.most)));
   return {
-    width, height: HEIGHT, left, right, top: TOP_PX, bottom, yTicks,
+    width, height: bottom + BOTTOM_PX, left, right, top: TOP_PX, bottom, yTicks,
     xTicks: ticks(to, width > WIDE_PX ? 4 : 2, from),
     x: (value) => left + ((right - left) * (value - from)) / (to - from || 1),
     y: (value) => bottom - ((bottom - TOP_PX) * (value - least)) / (most - least || 1),
   };
 }
 
-/**
- * Numbers that do not read like one before.
- * @param {number[]} numbers
- * @param {(value: number) => string} text
- */
-const withOwnText = (numbers, text) =>
-  numbers.filter((number, n) => numbers.findIndex((other) => text(other) === text(number)) === n);
+/** The numbers of an axis, all with as many decimals. @param {number[]} numbers */
+function tickTexts(numbers) {
+  const decimals = Math.max(0, ...numbers.map((number) => (tickText(number).split(".")[1] ?? "").length));
+  return numbers.map((number) => (decimals
+    ? number.toFixed(decimals).replace("-", number.toFixed(decimals) === `-${(0).toFixed(decimals)}` ? "" : "\u2212")
+    : tickText(number)));
+}
 
 let pictures = 0;
 
@@ -160,18 +163,20 @@ function Picture({ label, x, y, lines, marks, frame, scale }) {
 /** @param {{ x: XAxis, y: YAxis, frame: TickedFrame }} props */
 function Axes({ x, y, frame }) {
   const { left, right, bottom, height, xTicks, yTicks } = frame;
-  const boxes = xTicks.map((tick) => {
-    const width = widthOf(tickText(tick), REGULAR);
+  const [xTexts, yTexts] = [tickTexts(xTicks), tickTexts(yTicks)];
+  const boxes = xTicks.map((tick, n) => {
+    const width = widthOf(xTexts[n], REGULAR);
     const middle = frame.x(tick) - width / 2;
     return { left: Math.min(middle, right - width), top: bottom + 4, width: width + TICK_GAP_PX, height: TICK_PX };
   });
   const placed = placeCaptions(boxes, { left: 0, top: 0, width: frame.width + TICK_GAP_PX, height });
   return html`
-    ${yTicks.map((tick) => html`
+    ${yTicks.map((tick, n) => html`
       <line class="rule" x1=${left} x2=${right} y1=${frame.y(tick)} y2=${frame.y(tick)} />
-      <text x=${left - TICK_GAP_PX} y=${frame.y(tick) + 4} text-anchor="end">${y.text(tick)}</text>
+      <text x=${left - TICK_GAP_PX} y=${frame.y(tick) + 4} text-anchor="end">${yTexts[n]}</text>
     `)}
-    ${placed.map((box, n) => box && html`<text x=${box.left} y=${bottom + 16}>${tickText(xTicks[n])}</text>`)}
+    <text x="0" y="11" text-anchor="start">${y.title ?? y.unit}</text>
+    ${placed.map((box, n) => box && html`<text x=${box.left} y=${bottom + 16}>${xTexts[n]}</text>`)}
     <text x=${right} y=${height - 4} text-anchor="end">${x.unit}</text>
   `;
 }

@@ -17,7 +17,7 @@ import { html } from "./elements.js";
  * @property {(y: number) => number} y
  */
 
-/** The end of a line with its label, in pixels. @typedef {{ end?: string, x: number, y: number }} End */
+/** The end of a line, and where its label is wanted [px]. @typedef {{ x: number, y: number, box: Box }} End */
 
 const FONT_FAMILY = "system-ui, sans-serif";
 const FONT_PX = 12;
@@ -27,9 +27,11 @@ const CAPTION_PX = 14;
 const END_DOT_PX = 4;
 const TEXT_FROM_DOT_PX = 9;
 const TEXT_FROM_LINE_PX = 6;
-const MIN_ROOM_PX = 12;
-/** A longer label moves back over its line. */
+const MIN_ROOM_PX = 6;
+/** A longer label stands over its line. */
 const MAX_ROOM_PX = 132;
+/** In narrower charts no room is kept for labels: they stand over their lines. */
+const ROOMY_PX = 520;
 const DEFAULT_MARK_PX = 1.5;
 
 /** @type {CanvasRenderingContext2D | null} */
@@ -47,10 +49,12 @@ export function widthOf(text, weight = LABEL_WEIGHT) {
 }
 
 /**
- * The room that the labels at the ends of lines need on the right of a chart [px].
+ * The room that is kept for labels on the right of a chart, where lines end [px].
  * @param {Line[]} lines
+ * @param {number} width of the chart
  */
-export function roomFor(lines) {
+export function roomFor(lines, width) {
+  if (width < ROOMY_PX) return MIN_ROOM_PX;
   const widest = Math.max(0, ...lines.map(({ end }) => (end ? TEXT_FROM_DOT_PX + widthOf(end) + 4 : 0)));
   return Math.round(Math.min(MAX_ROOM_PX, Math.max(MIN_ROOM_PX, widest)));
 }
@@ -79,11 +83,12 @@ export function LineLabels({ marks, lines, curves, frame }) {
   const bounds = { left, top: 0, width: width - left, height: bottom };
   const captioned = byImportance(marks.filter(({ text }) => text));
   const places = captioned.map((mark) => captionPlaces(frame, mark));
-  const ends = lines.filter(({ end }) => end).map((line) => ({
-    ...line, x: frame.x(line.xs.at(-1) ?? NaN), y: frame.y(Number(line.ys.at(-1))),
-  }));
+  const ends = lines.filter(({ end }) => end).map((line) => {
+    const at = { x: frame.x(line.xs.at(-1) ?? NaN), y: frame.y(Number(line.ys.at(-1))) };
+    return { ...line, ...at, box: labelBox(line.end ?? "", at, width) };
+  });
   const captions = chooseCaptions(places, bounds, coverOf(marks, curves, ends, frame));
-  const labels = placeLabels(ends.map(endBox), captions.filter((box) => box !== null), bounds);
+  const labels = placeLabels(ends.map(({ box }) => box), captions.filter((box) => box !== null), bounds);
   return html`
     ${captions.map((box, n) => box && html`
       <${Label} text=${captioned[n].text} box=${box} color=${captioned[n].ink ?? captioned[n].color ?? "--ink"} />
@@ -110,12 +115,18 @@ const Label = ({ text, box: { left, top, height }, color }) => html`
 `;
 
 /**
- * Where the label of a line's end is wanted.
- * @param {End} end
+ * Where the label of a line's end is wanted: right of it, or where there is no room over the line that comes to it.
+ * @param {string} text
+ * @param {{ x: number, y: number }} end
+ * @param {number} width of the chart
  * @returns {Box}
  */
-const endBox = ({ end, x, y }) =>
-  ({ left: x + TEXT_FROM_DOT_PX, top: y - LINE_PX / 2, width: widthOf(end ?? ""), height: LINE_PX });
+function labelBox(text, { x, y }, width) {
+  const long = widthOf(text);
+  return x + TEXT_FROM_DOT_PX + long <= width
+    ? { left: x + TEXT_FROM_DOT_PX, top: y - LINE_PX / 2, width: long, height: LINE_PX }
+    : { left: x - long - TEXT_FROM_LINE_PX, top: y - LINE_PX - TEXT_FROM_LINE_PX, width: long, height: LINE_PX };
+}
 
 /**
  * Counts what a box would cover: straight lines, curves and dots; labels half, since they can move.
@@ -133,7 +144,7 @@ function coverOf(marks, curves, ends, frame) {
   /** @type {[number, number][][]} */
   const paths = curves.map(({ xs, ys }) =>
     xs.flatMap((x, n) => (typeof ys[n] === "number" ? [[frame.x(x), frame.y(ys[n])]] : [])));
-  const [dots, labels] = [ends.map(dotBox), ends.map(endBox)];
+  const [dots, labels] = [ends.map(dotBox), ends.map(({ box }) => box)];
   return (/** @type {Box} */ box) => {
     const covered = (/** @type {Box[]} */ boxes) => boxes.filter((other) => overlap(other, box)).length;
     return [...straight, ...paths].filter((points) => passes(points, box)).length + covered(dots) + covered(labels) / 2;

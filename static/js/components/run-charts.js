@@ -6,7 +6,7 @@ import { count, metres, SAME_MOMENT_S, whole } from "../format.js";
 import { distanceAt } from "../narrative/moment.js";
 import { raceInView, shownRun } from "../on-stage.js";
 import { clipped, shownTime, timeline, timelineProblem } from "../race.js";
-import { largest } from "../scale.js";
+import { largest, ticks } from "../scale.js";
 import { agentOf, laneTitle } from "../settings.js";
 import { scene, served } from "../store.js";
 import { scale } from "../time.js";
@@ -16,13 +16,24 @@ import { html } from "./elements.js";
 
 /** @import { Run, Timeline } from "../types.js" */
 
-const HEADROOM = 1.16;
+const HEADROOM = 1.12;
+/** A level is in the picture of a race up to so many times the farthest distance. */
+const LEVELS_WITHIN = 1.4;
+
+/**
+ * The end of an axis of what grows: a round number that has been reached, as of its grid.
+ * @param {number} reached
+ */
+function roundEnd(reached) {
+  const [first = 0, second = 1] = ticks(reached, 4);
+  return Math.ceil(reached / (second - first) - 1e-9) * (second - first);
+}
 
 // ---- the race
 
 const MAX_MOMENTS = 250;
-/** The time axis shows at least so much of a race that has just begun [s]. */
-const FIRST_VIEW_S = 20;
+/** The axes show at least so much of a race that has just begun [s], [m]. */
+const FIRST_VIEW = { time_s: 4, distance_m: 0.05 };
 
 export function RaceChart() {
   const raceTimeline = timeline.value;
@@ -58,19 +69,22 @@ function Lines({ known, time }) {
     };
   });
   const best_m = raceInView.value?.best_known_m ?? null;
-  const far = Math.max(known.finish_line_m, best_m ?? 0, ...lanes.map(({ ys }) => ys.at(-1) ?? NaN));
+  const farthest = largest(lanes.flatMap(({ ys }) => ys), FIRST_VIEW.distance_m);
+  const far = Math.max(farthest, ...[known.finish_line_m, best_m ?? 0].filter((m) => m < LEVELS_WITHIN * farthest));
   const ends = lanes.map(({ name, ys }) => `${name} ${metres(ys.at(-1))}`).join(", ");
   const best = best_m === null ? "" : `; best known ${metres(best_m)}`;
   const caption = `The race after ${Math.round(until)} seconds: ${ends}${best}.`;
-  const last = keptEnd(`${known.id} ${known.clock}`, lastMoment(known, until, longest));
+  const end = Math.min(longest, roundEnd(Math.max(until, FIRST_VIEW.time_s)));
+  const last = keptEnd(`${known.id} ${known.clock}`, end);
   const moments = momentsOf(until, last);
   const x = {
     axis: `race ${known.id}`, max: last, unit: "race time, s",
     text: (/** @type {number} */ seconds) => `${seconds.toFixed(1)}\u00a0s`,
   };
+  const least = -largest(lanes.flatMap(({ ys }) => ys.map((distance) => -distance)), 0);
   return html`
     <${Chart} name="the race" label=${caption} x=${x} lines=${lanes} marks=${marksOfRace(known, until, best_m)}
-      y=${{ min: Math.min(0, ...lanes.flatMap(({ ys }) => ys)), max: HEADROOM * far, unit: "m", text: metres }}
+      y=${{ min: least, max: HEADROOM * far, unit: "m", text: metres, title: "distance, m" }}
       xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known.id)}
       reach=${{ shown: until, computed: longest }}>
       ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
@@ -103,17 +117,6 @@ function momentsOf(until, last) {
 }
 
 /**
- * Where the time axis ends.
- * @param {Timeline} timeline
- * @param {number} until
- * @param {number} longest
- */
-function lastMoment({ first_finish_s }, until, longest) {
-  const planned = first_finish_s ? Math.min(1.3 * first_finish_s, longest) : Math.min(longest, FIRST_VIEW_S);
-  return Math.max(until, planned, 1);
-}
-
-/**
  * The finish line, the best known walk, and time-out once it is past.
  * @param {Timeline} timeline
  * @param {number} until
@@ -137,8 +140,8 @@ function marksOfRace({ finish_line_m, first_finish_s }, until, best_m) {
 
 /** With more, single points are not marked. */
 const MAX_MARKED_POINTS = 45;
-/** The axis reaches at least so far [m]. */
-const MIN_TOP_M = 0.5;
+/** The axis shows at least so many steps of a practice that has just begun. */
+const FIRST_STEPS = 50;
 
 const CURVE_INVITATION = "Each evaluation adds a point here, on its way to greedy’s line.";
 
@@ -199,9 +202,17 @@ function captionOf({ points, greedy_m, best_known_m }) {
   return `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy}${best}.`;
 }
 
+/** The end of the axis: all of a practice that is over, else a round number that it has reached. */
+/** @param {NonNullable<typeof curve.value>} curve */
+function endOfPractice({ points, to, from, run }) {
+  const { picture = 0, computed = 0 } = (shownRun.value?.id === run.id && scale.value) || {};
+  const reached = Math.max(points.at(-1)?.step ?? 0, from + picture, from + computed, FIRST_STEPS);
+  return reached >= to ? to : Math.min(to, roundEnd(reached));
+}
+
 /** @param {{ known: NonNullable<typeof curve.value> }} props */
 function Curve({ known }) {
-  const { points, to, greedy_m, best_known_m, run } = known;
+  const { points, greedy_m, best_known_m, run } = known;
   const { color, title } = agentOf(run.config.agent ?? served().defaults.training.agent);
   const steps = points.map(({ step }) => step);
   const distances = points.map(({ distance_m }) => distance_m);
@@ -209,16 +220,17 @@ function Curve({ known }) {
     name: title, color, xs: steps, ys: distances, dots: points.length < MAX_MARKED_POINTS,
     end: points.length > 1 ? metres(distances.at(-1)) : "",
   };
-  const levels = [greedy_m ?? 0, best_known_m ?? 0];
+  const farthest = largest([greedy_m ?? 0, ...distances], FIRST_VIEW.distance_m);
+  const levels = [farthest, best_known_m ?? 0].filter((level) => level < LEVELS_WITHIN * farthest);
   const changed = changesInWords(run.config.agent, known.changes);
   const x = {
-    axis: `practice of ${run.id}`, max: to, unit: "steps of practice",
+    axis: `practice of ${run.id}`, max: endOfPractice(known), unit: "steps of practice",
     text: (/** @type {number} */ step) => count(step, "step"),
   };
   const y = {
     min: -largest(distances.map((distance) => -distance), 0),
-    max: HEADROOM * largest([...levels, ...distances], MIN_TOP_M),
-    unit: "m", text: metres,
+    max: HEADROOM * largest(levels),
+    unit: "m", text: metres, title: "distance in 50 steps, m",
   };
   return html`
     <${Chart} name="the learning curve" label=${captionOf(known)} x=${x} y=${y} lines=${[line]} xs=${steps}

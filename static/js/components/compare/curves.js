@@ -58,7 +58,7 @@ export function CurvesChart({ curves, greedy = null }) {
   const y = {
     min: -largest(distances.map((distance) => -distance), 0),
     max: HEADROOM * largest([...distances, greedy ?? 0], MIN_TOP_M),
-    unit: "m", text: metres,
+    unit: "m", text: metres, title: "distance in 50 steps, m",
   };
   const marks = greedy === null ? [] : [{ y: greedy, name: "Greedy", kind: "greedy", ink: "--dim", text: "Greedy" }];
   return html`
