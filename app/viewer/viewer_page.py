@@ -13,7 +13,17 @@ from starlette.routing import Route
 
 from hexapods.drawing.viser_internals.client import content_policy, patched_page
 
-STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "legs.js", "inspection.js", "labels.js")
+STAGE_SCRIPTS = (
+    "client.js",
+    "patch.js",
+    "robots.js",
+    "shots.js",
+    "clicks.js",
+    "legs.js",
+    "camera.js",
+    "inspection.js",
+    "labels.js",
+)
 ALLOWED_QUERY = frozenset(
     {
         "theme",

@@ -1,4 +1,4 @@
-"""Distances in a photo finish, and ghosts of evaluations."""
+"""Distances in a photo finish as bars, and ghosts of evaluations."""
 
 from collections.abc import Sequence
 
@@ -13,11 +13,12 @@ from hexapods.shows.scene_spec import rest_pose
 from hexapods.shows.stage_frame import Ghost, LaneFrame, SceneSpec, StageFrame
 
 _BAR_M = 0.05
-_TEXT_SCALE = 1.7
 
 
 class PhotoFinish(Temporary):
-    """A bar from the start line to each robot with its distance, shown during the photo finish.
+    """A bar from the start line to each robot, shown during the photo finish.
+
+    The labels of the robots tell places and distances.
 
     Args:
         server: where to draw.
@@ -33,17 +34,14 @@ class PhotoFinish(Temporary):
         self._spec, self._xs = spec, xs
 
     def draw(self, frame: StageFrame) -> None:
-        """Show or hide the bars as the frame says; redraw them if ranks or distances changed."""
+        """Show or hide the bars as the frame says; redraw them if distances changed."""
         frozen = frame.phase == "photo-finish"
-        ranking = tuple(
-            (lane.rank, lane.distance_m, lane.conditions.ground_m(0))
-            for lane in frame.lanes
-            if frozen
+        shown = tuple(
+            (lane.distance_m, lane.conditions.ground_m(0)) for lane in frame.lanes if frozen
         )
-        if not self._begin(ranking):
+        if not self._begin(shown):
             return
-        for number, (shown, x) in enumerate(zip(ranking, self._xs, strict=True)):
-            rank, distance_m, ground_m = shown
+        for number, ((distance_m, ground_m), x) in enumerate(zip(shown, self._xs, strict=True)):
             bar = strip(_BAR_M, max(abs(distance_m), 0.002))
             color = rgb(self._spec.lane_specs[number].color)
             self._server.scene.add_mesh_simple(
@@ -54,13 +52,6 @@ class PhotoFinish(Temporary):
                 position=(x, distance_m / 2, ground_m + 0.004),
                 cast_shadow=False,
                 receive_shadow=False,
-            )
-            self._server.scene.add_label(
-                f"{self._root}/far{number}",
-                f"{rank}.  {metres(distance_m)}",
-                position=(x, -0.02, 0.0),
-                anchor="top-center",
-                font_screen_scale=_TEXT_SCALE,
             )
 
 

@@ -137,9 +137,24 @@ class _Instances(NamedTuple):
 
 
 def label_text(
-    lane_spec: LaneSpec, lane: LaneFrame, ghost: LaneFrame | None = None, ghost_name: str = "ghost"
+    lane_spec: LaneSpec,
+    lane: LaneFrame,
+    ghost: LaneFrame | None = None,
+    ghost_name: str = "ghost",
+    *,
+    is_ranked: bool = False,
 ) -> str:
-    """Return name, distance and activity, in lines so short that three labels fit on a phone."""
+    """Return name, distance and activity, in lines so short that three labels fit on a phone.
+
+    Args:
+        lane_spec: name of the lane.
+        lane: the lane.
+        ghost: what another run's ghost does on it, if there is one.
+        ghost_name: what the ghost is, in a word.
+        is_ranked: whether it is the photo finish, which tells places in place of activities.
+    """
+    if is_ranked:
+        return f"{lane.rank}. {lane_spec.name}\n{metres(lane.distance_m)}"
     if lane.failure is not None:
         return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
@@ -199,20 +214,23 @@ class NameLabel:
         )
         self._position: tuple[float, float, float] | None = None
 
-    def draw(self, lane: LaneFrame, ghost: LaneFrame | None, ghost_name: str) -> None:
+    def draw(
+        self, lane: LaneFrame, ghost: LaneFrame | None, ghost_name: str, *, is_ranked: bool
+    ) -> None:
         """Move the label with the robot and update its text and flag.
 
         Args:
             lane: the lane.
             ghost: what another run's ghost does on it, if there is one.
             ghost_name: what the ghost is, in a word.
+            is_ranked: whether it is the photo finish.
         """
         # Rounded to the millimetre, so that a trembling robot causes no messages for its label.
         x, y, z = lane.qpos[:3].round(3).tolist()
         position = (x + self._x_m, y, z + self._over_m)
         if position != self._position:
             self._label.position = self._position = position
-        text = label_text(self._lane_spec, lane, ghost, ghost_name)
+        text = label_text(self._lane_spec, lane, ghost, ghost_name, is_ranked=is_ranked)
         if text != self._label.text:
             self._label.text = text
         if lane.crossed != self._flag.visible:

@@ -144,7 +144,9 @@ class _RunScene:
         labelled = [*zip_longest(frame.lanes, frame.ghost_lanes[: len(frame.lanes)])]
         labelled += [(ghost, None) for ghost in alone]
         for number, (lane, ghost) in enumerate(labelled):
-            self._labels[number].draw(lane, ghost, self._ghost_name(number))
+            self._labels[number].draw(
+                lane, ghost, self._ghost_name(number), is_ranked=frame.phase == "photo-finish"
+            )
         for number, lane in enumerate(frame.lanes):
             self._payloads[number].draw(lane)
             self._pushes[number].draw(lane)

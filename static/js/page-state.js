@@ -72,9 +72,10 @@ const severalOf = (words) => ({
 });
 /** @type {Codec<string>} */
 const CAMERA = {
-  read: (text) => (/^(leader|free|[1-8])$/.test(text) ? text : undefined),
-  write: (target) => (target === "leader" ? null : target),
-  words: ["leader", "free", "1 to 8"],
+  // "leader" is what links had when nothing else directed the camera.
+  read: (text) => (text === "leader" ? "directed" : /^(directed|free|[1-8])$/.test(text) ? text : undefined),
+  write: (target) => (target === "directed" ? null : target),
+  words: ["directed", "free", "1 to 8"],
 };
 /** @type {Codec<number | null>} */
 const WHOLE = {
@@ -119,8 +120,8 @@ const FIELDS = {
   tab: { part: "query", name: "tab", initial: null, ...noneOrOneOf(TABS), isEntry: true },
   /** A second tab, pinned beside the first where there is room. */
   pinned: { part: "query", name: "pinned", initial: null, ...noneOrOneOf(TABS) },
-  /** Target of the camera: "leader", "free", or the number of a lane, from "1". */
-  camera: { part: "query", name: "camera", initial: "leader", ...CAMERA },
+  /** Target of the camera: "directed", "free", or the number of a lane, from "1". */
+  camera: { part: "query", name: "camera", initial: "directed", ...CAMERA },
   /** What is hidden of the page. */
   hidden: { part: "query", name: "hidden", initial: /** @type {string[]} */ ([]), ...severalOf(HIDEABLE) },
   /** How the list of runs is grouped; null where the browser's own choice holds. */

@@ -2,6 +2,7 @@
 // and texts and links that are copied, which is told for a few seconds.
 import { computed, effect, signal } from "@preact/signals";
 import { page } from "./page-state.js";
+import { shotOf } from "./replay-frames.js";
 import { scene } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -86,6 +87,30 @@ export function followTheme() {
 export const drawHere = signal(/** @type {((messages: Message[]) => void) | null} */ (null));
 /** The last click on a foot grid, until it is answered. @type {Signal<Click | null>} */
 export const clickedCell = signal(null);
+
+// ---- the camera: it is directed (viewer/camera.js), until the viewer takes it by hand, or lets it go
+
+/** The target at which the viewer took the camera; null while nobody has. @type {Signal<string | null>} */
+const takenAt = signal(null);
+/** From which of its sides a shot is taken, from 0. */
+export const angle = signal(0);
+/** Whether the camera is the viewer's. */
+export const isTaken = computed(() => page.camera.value === "free" || page.camera.value === takenAt.value);
+/** The shot, as a text: it stays the same while the figures of the scene change. */
+const shotText = computed(() => JSON.stringify(shotOf(scene.value, isTaken.value ? "free" : page.camera.value)));
+
+/** The viewer has turned the picture. */
+export const takeCamera = () => (takenAt.value = page.camera.peek());
+/** Aim the camera: "directed", "free", or the number of a lane. @param {string} target */
+export const aim = (target) => {
+  [takenAt.value, angle.value, page.camera.value] = [null, 0, target];
+};
+/** What the 3D view is to know of the camera. */
+export const directions = computed(() => ({
+  ...(isStill.value ? { shot: null, lane: null } : JSON.parse(shotText.value)), angle: angle.value,
+}));
+/** See the shot from another side. */
+export const nextAngle = () => (angle.value += 1);
 
 // ---- the legs of the robots in the picture: where they are, which one was picked, and the menu that opens there. The
 // 3D view projects the poses that it draws (viewer/legs.js), and tells of them in pixels of the picture

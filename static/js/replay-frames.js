@@ -258,7 +258,32 @@ function isEqual(a, b) {
 /** @type {(entity: string) => Message} */
 const removal = (entity) => ({ type: "RemoveSceneNodeMessage", name: entity.slice(entity.indexOf(" ") + 1) });
 
-/** Keeps what the camera follows in the middle of the world: a lane at once, the leader smoothly; "free" nothing. */
+// ---- the camera
+
+/** The figures of a moment that decide the shot. */
+/** @typedef {{ kind: string, phase: string, lanes: { step: number }[] }} Shown */
+/** The shot, null where the viewer has the camera, and the lane of its robot, null for all of them. */
+/** @typedef {{ shot: "start" | "race" | "finish" | "practice" | "close" | null, lane: number | null }} Shot */
+
+/**
+ * The shot of a moment (viewer/shots.js has from where it is taken): the start line until the first step is made, the
+ * race, its end; or the robot of a lane.
+ * @type {(scene: Shown | null, target: string) => Shot}
+ */
+export function shotOf(scene, target) {
+  const lane = Number(target) - 1;
+  const lanes = scene?.lanes ?? [];
+  if (target === "free") return { shot: null, lane: null };
+  if (lanes[lane] && lanes.length > 1) return { shot: "close", lane };
+  if (scene?.kind === "training") return { shot: "practice", lane: null };
+  if (scene?.kind !== "race" || lanes.every(({ step }) => step <= 1)) return { shot: "start", lane: null };
+  return { shot: ["photo-finish", "finished"].includes(scene.phase) ? "finish" : "race", lane: null };
+}
+
+/**
+ * Keeps what the camera follows in the middle of the world: a lane at once, the leader smoothly; "free" nothing. Where
+ * the camera is directed it goes along, so that who takes it by hand has it in the middle.
+ */
 export class Follower {
   constructor() {
     this.x = 0;
@@ -274,8 +299,9 @@ export class Follower {
    * @returns {Message}
    */
   centring({ world }, { follow }, view, elapsed_s) {
-    const [x, y] = view === "free" ? [this.x, this.y] : follow[view] ?? [0, 0];
-    const share = view === "leader" ? Math.exp(-elapsed_s / SMOOTHING_S) : 0;
+    const isLane = view in follow && view !== "leader";
+    const [x, y] = view === "free" ? [this.x, this.y] : follow[isLane ? view : "leader"] ?? [0, 0];
+    const share = !isLane ? Math.exp(-elapsed_s / SMOOTHING_S) : 0;
     [this.x, this.y] = [x, y + (this.y - y) * share];
     return { type: "SetPositionMessage", name: world, position: [-this.x, -this.y, 0], owner: "" };
   }

@@ -11,10 +11,15 @@
   const EDGE_PX = 4;
   const GAP_PX = 2;
   const STEM_FROM_PX = 8;
+  /** By how much of its width a label gives way to the side, what that costs of its distance, and to be below. */
+  const SHIFTS = [0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9];
+  const [SIDEWAYS, BELOW_PX] = [0.8, 40];
 
   /** Name of the scene node → {element, anchor, size}; the size is unknown until it is measured. */
   const labels = new Map();
   let covered = [];
+  /** Height of the highest label of a robot so far [px]. */
+  let highest = 0;
   let lanes = [];
 
   const layer = document.createElement("div");
@@ -63,9 +68,12 @@
     labels.delete(name);
   };
 
+  /** The lane whose robot a label names; null of others. */
+  const laneOf = (name) => /\/lane(\d+)\/label$/.exec(name)?.[1] ?? null;
+
   const paint = ({ name, element }) => {
-    const lane = /\/lane(\d+)\/label$/.exec(name)?.[1];
-    if (lane && lanes[lane]) element.style.setProperty("--agent", lanes[lane]);
+    const lane = laneOf(name);
+    if (lane !== null && lanes[lane]) element.style.setProperty("--agent", lanes[lane]);
   };
 
   // ---- messages that the page draws come by the client's queue
@@ -113,7 +121,10 @@
 
   const start = () => {
     document.body.append(layer);
-    addEventListener("resize", () => labels.forEach((label) => (label.size = null)));
+    addEventListener("resize", () => {
+      highest = 0;
+      labels.forEach((label) => (label.size = null));
+    });
     const attach = () => {
       const { scene } = window.__viserMutable ?? {};
       if (scene) scene.onAfterRender = place;
@@ -122,8 +133,9 @@
     attach();
   };
 
-  /** Those that cannot move come last: they are left out where there is no room. */
-  const inOrder = () => [...labels.values()].sort((a, b) => isFixed(a) - isFixed(b));
+  /** Those of the robots come first, and last the words on the ground, which are left out where there is no room. */
+  const inOrder = () => [...labels.values()].sort((a, b) => rankOf(a) - rankOf(b));
+  const rankOf = (label) => (isFixed(label) ? 2 : laneOf(label.name) === null ? 1 : 0);
   const isFixed = ({ anchor }) => anchor.startsWith("center");
 
   /** Size of the picture [px]. */
@@ -135,29 +147,39 @@
   const place = () => {
     const { camera } = window.__viserMutable;
     const picture = pictureSize();
-    const taken = [...covered];
+    const robots = window.hexapodsViewer.robots.outlines().flatMap(({ boxes }) => boxes);
+    const taken = [...covered, ...robots];
     for (const label of inOrder()) {
       const { element } = label;
       const point = positionOf(label)?.project(camera);
       const isInView = point && Math.abs(point.x) < 1.1 && Math.abs(point.y) < 1.1 && Math.abs(point.z) < 1;
       element.hidden = !isInView;
       if (!isInView) continue;
-      label.size ??= sizeOf(element);
+      measure(label);
       const at = { x: ((point.x + 1) / 2) * picture.width, y: ((1 - point.y) / 2) * picture.height };
       const box = label.size.height > 0 && roomFor(label, at, taken, picture);
       element.hidden = !box;
       if (!box) continue;
       taken.push(box);
-      element.style.translate = `${Math.round(box.left)}px ${Math.round(box.top)}px`;
-      const stem = Math.round(at.y - box.bottom);
-      element.style.setProperty("--stem", `${stem > STEM_FROM_PX ? stem : 0}px`);
-      element.style.setProperty("--stem-x", `${Math.round(at.x - box.left)}px`);
+      move(label, box, at);
     }
   };
 
-  const sizeOf = (element) => {
-    const { width, height } = element.getBoundingClientRect();
-    return { width: Math.ceil(width), height: Math.ceil(height) };
+  /** Measure a label whose text is new. */
+  const measure = (label) => {
+    if (label.size) return;
+    const { width, height } = label.element.getBoundingClientRect();
+    label.size = { width: Math.ceil(width), height: Math.ceil(height) };
+    if (laneOf(label.name) !== null) highest = Math.max(highest, label.size.height);
+  };
+
+  /** Put a label into its box, with a stem to what it names where that is not right beside it. */
+  const move = ({ element }, box, at) => {
+    element.style.translate = `${Math.round(box.left)}px ${Math.round(box.top)}px`;
+    const stem = Math.round(at.y - box.bottom);
+    const isOver = at.x >= box.left && at.x <= box.right;
+    element.style.setProperty("--stem", `${isOver && stem > STEM_FROM_PX ? stem : 0}px`);
+    element.style.setProperty("--stem-x", `${Math.round(at.x - box.left)}px`);
   };
 
   /** Where a label is in the world; null until its parent is made. A label has no object of its own. */
@@ -169,25 +191,37 @@
     return camera.position.clone().set(...position).applyMatrix4(parentNode.matrixWorld);
   };
 
-  /** The free box that is nearest to a label's point: above or below it; null if there is none. */
-  const roomFor = ({ anchor, size: { width, height } }, { x, y }, taken, picture) => {
-    const left = Math.max(EDGE_PX, Math.min(x - width / 2, picture.width - width - EDGE_PX));
-    const offset = { bottom: -height, center: -height / 2, top: 0 }[anchor.split("-")[0]];
-    const boxAt = (top) => ({ left, top, right: left + width, bottom: top + height });
+  /** The free box that is nearest to where a label belongs; null if there is none. */
+  const roomFor = (label, { x, y }, taken, picture) => {
+    const { anchor, size: { width, height } } = label;
+    const boxAt = (left, top) => ({ left, top, right: left + width, bottom: top + height });
     const blocking = (box) => taken.find((other) => intersects(other, box));
-    const search = (direction) => {
-      let box = boxAt(Math.round(Math.max(EDGE_PX, Math.min(y + offset, picture.height - height - EDGE_PX))));
+    const isIn = (box) => box.left >= 0 && box.top >= 0 && box.right <= picture.width && box.bottom <= picture.height;
+    const within = (value, most) => Math.max(EDGE_PX, Math.min(value, most - EDGE_PX));
+    const offset = { bottom: -height, center: -height / 2, top: 0 }[anchor.split("-")[0]];
+    const top = Math.round(within(y + offset, picture.height - height));
+    if (isFixed(label)) {
+      const box = boxAt(Math.round(x - width / 2), Math.round(y + offset));
+      return isIn(box) && !blocking(box) ? box : null;
+    }
+    /** From a place up or down, until it is free. */
+    const search = (left, direction) => {
+      let box = boxAt(left, top);
       for (let other = blocking(box); other; other = blocking(box)) {
-        if (!direction) return null;
-        box = boxAt(direction < 0 ? Math.floor(other.top) - GAP_PX - height : Math.ceil(other.bottom) + GAP_PX);
-        if (box.top < 0 || box.bottom > picture.height) return null;
+        box = boxAt(left, direction < 0 ? Math.floor(other.top) - GAP_PX - height : Math.ceil(other.bottom) + GAP_PX);
+        if (!isIn(box)) return null;
       }
       return box;
     };
-    if (isFixed({ anchor })) return search(0);
-    return offset < 0 ? search(-1) ?? search(1) : search(1) ?? search(-1);
+    const lefts = SHIFTS.map((shift) => Math.round(within(x - width / 2 + shift * width, picture.width - width)));
+    const boxes = lefts.flatMap((left) => [search(left, -1), search(left, 1)]).filter(Boolean);
+    const costOf = (box) => Math.abs(box.top - top) + SIDEWAYS * Math.abs(box.left - lefts[0])
+      + (box.top > top && offset < 0 ? BELOW_PX : 0);
+    return boxes.reduce((best, box) => (best === null || costOf(box) < costOf(best) ? box : best), null);
   };
 
   const intersects = (a, b) =>
     a.left < b.right + GAP_PX && b.left < a.right + GAP_PX && a.top < b.bottom + GAP_PX && b.top < a.bottom + GAP_PX;
+
+  window.hexapodsViewer = { ...window.hexapodsViewer, labels: { height: () => highest } };
 })();

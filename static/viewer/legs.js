@@ -10,9 +10,7 @@
 
   if (parent === window) return;
 
-  /** Batches of links of legs are named by the legs of their instances: ".../legs-1-2-3-4-5-6". */
-  const LEGS = /\/legs((?:-\d+)+)(?:\/|$)/;
-  const TORSO = /\/torso(?:\/|$)/;
+  const { links: allLinks, projected, root } = window.hexapodsViewer.robots;
   const TOLD_MS = 100;
   const CLICK_PX = 5;
   const LEG_PX = 26;
@@ -20,82 +18,16 @@
   /** Clicks on the ground beyond are meant for nothing. */
   const FAR_M = 3;
 
-  /** Name of a batch → {kind, legs, tip, positions, wxyzs}. */
-  const batches = new Map();
   let wanted = null;
-
-  const floats = (bytes) => (bytes instanceof Float32Array ? bytes
-    : new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength)));
-
-  /** The vertex that is farthest from the link's origin: the foot of a tibia, the next joint of the others. */
-  const tipOf = (vertices) => {
-    let best = [0, 0, 0];
-    let far = 0;
-    for (let at = 0; at + 2 < vertices.length; at += 3) {
-      const [x, y, z] = [vertices[at], vertices[at + 1], vertices[at + 2]];
-      if (x * x + y * y + z * z > far) [best, far] = [[x, y, z], x * x + y * y + z * z];
-    }
-    return best;
-  };
-
-  const take = (message) => {
-    const { type, name } = message;
-    if (type === "BatchedMeshesMessage") {
-      const legs = LEGS.exec(name)?.[1].split("-").filter(Boolean).map(Number) ?? null;
-      if (!legs && !TORSO.test(name)) return;
-      const { vertices, batched_positions, batched_wxyzs } = message.props;
-      batches.set(name, {
-        legs, tip: tipOf(floats(vertices)), positions: floats(batched_positions), wxyzs: floats(batched_wxyzs),
-      });
-    } else if (type === "SceneNodeUpdateMessage" && batches.has(name)) {
-      const { batched_positions, batched_wxyzs } = message.updates;
-      if (batched_positions) batches.get(name).positions = floats(batched_positions);
-      if (batched_wxyzs) batches.get(name).wxyzs = floats(batched_wxyzs);
-    } else if (type === "RemoveSceneNodeMessage") {
-      for (const batch of batches.keys()) if (batch === name || batch.startsWith(`${name}/`)) batches.delete(batch);
-    }
-  };
-
-  addEventListener("hexapods:draw", ({ detail }) => detail.messages.forEach(take));
 
   // ---- projection
 
-  const rotated = ([w, x, y, z], [a, b, c]) => {
-    const [tx, ty, tz] = [2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)];
-    return [a + w * tx + y * tz - z * ty, b + w * ty + z * tx - x * tz, c + w * tz + x * ty - y * tx];
-  };
+  /** The links of all legs on the screen: {lane, leg, from, to, low}. */
+  const links = () => allLinks().filter(({ leg }) => leg !== null).map(({ lane, leg, origin, tip }) =>
+    ({ lane, leg, from: projected(origin), to: projected(tip), low: tip[2] })).filter(({ from, to }) => from && to);
 
-  /** A point of the world in pixels of the picture; null behind the camera. */
-  const projected = (name, point) => {
-    const { camera, canvas, nodeRefFromName } = window.__viserMutable ?? {};
-    const node = nodeRefFromName?.[name.slice(0, name.lastIndexOf("/"))];
-    if (!camera || !node) return null;
-    const at = camera.position.clone().set(...point).applyMatrix4(node.matrixWorld).project(camera);
-    if (Math.abs(at.z) >= 1) return null;
-    return { x: ((at.x + 1) / 2) * canvas.clientWidth, y: ((1 - at.y) / 2) * canvas.clientHeight };
-  };
-
-  const parts = (batch, index) => ({
-    origin: [...batch.positions.slice(3 * index, 3 * index + 3)],
-    wxyz: [...batch.wxyzs.slice(4 * index, 4 * index + 4)],
-  });
-
-  /** The links of all legs on the screen: {lane, leg, from, to}. */
-  const links = () => [...batches].flatMap(([name, batch]) => {
-    if (!batch.legs) return [];
-    return Array.from({ length: batch.positions.length / 3 }, (_, index) => {
-      const { origin, wxyz } = parts(batch, index);
-      const tip = rotated(wxyz, batch.tip).map((coordinate, axis) => coordinate + origin[axis]);
-      const [from, to] = [projected(name, origin), projected(name, tip)];
-      return {
-        lane: Math.floor(index / batch.legs.length), leg: batch.legs[index % batch.legs.length], from, to, low: tip[2],
-      };
-    }).filter(({ from, to }) => from && to);
-  });
-
-  const bodies = () => [...batches].flatMap(([name, batch]) => (batch.legs ? []
-    : Array.from({ length: batch.positions.length / 3 }, (_, lane) =>
-      ({ lane, at: projected(name, parts(batch, lane).origin) })).filter(({ at }) => at)));
+  const bodies = () => allLinks().filter(({ leg }) => leg === null)
+    .map(({ lane, origin }) => ({ lane, at: projected(origin) })).filter(({ at }) => at);
 
   const distanceTo = ({ from, to }, { x, y }) => {
     const [dx, dy] = [to.x - from.x, to.y - from.y];
@@ -118,8 +50,7 @@
   /** Whether the ray through a point of the picture meets the ground of the track. */
   const isGround = ({ x, y }) => {
     const { camera, canvas, nodeRefFromName } = window.__viserMutable ?? {};
-    const [name] = batches.keys();
-    const node = name && nodeRefFromName?.[name.slice(0, name.lastIndexOf("/"))];
+    const node = nodeRefFromName?.[root()];
     if (!camera || !node) return false;
     const toTrack = node.matrixWorld.clone().invert();
     const from = camera.position.clone().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toTrack);

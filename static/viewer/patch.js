@@ -1,10 +1,12 @@
 // Patch of viser's client: runs before it on the page /viewer/, which the dashboard has in an iframe, after client.js.
 // Assumptions about the client are listed and tested in hexapods/drawing/viser_internals.
 //
-//   from the parent   {type: "hexapods:show", theme?: "light" | "dark", isProjected?}
+//   from the parent   {type: "hexapods:show", theme?: "light" | "dark", isProjected?, and what camera.js, legs.js and
+//                     labels.js have}
 //                     {type: "hexapods:draw", messages: of viser}
 //                     {type: "hexapods:inspect"}, as inspection.js has it
 //   to the parent     {type: "hexapods:status", status: "connected"}
+//                     {type: "hexapods:taken"}: the viewer has taken the camera, by hand
 //                     {type: "hexapods:key", key, code, shiftKey}
 //                     {type: "hexapods:drag"} while files are dragged over the picture
 (() => {
@@ -23,34 +25,14 @@
   addEventListener("message", ({ origin, source, data }) => {
     if (origin !== location.origin || source !== parent) return;
     if (!["hexapods:show", "hexapods:draw", "hexapods:inspect"].includes(data?.type)) return;
-    dispatchEvent(new CustomEvent(data.type, { detail: data })); // for labels.js and inspection.js
+    dispatchEvent(new CustomEvent(data.type, { detail: data })); // for the scripts that follow
     if (data.type !== "hexapods:show") return;
     setTheme(data.theme);
     root.toggleAttribute("data-projected", data.isProjected === true);
   });
   setTheme(new URLSearchParams(location.search).get("theme"));
   addEventListener("hexapods:connected", () => tellParent({ type: "hexapods:status", status: "connected" }));
-
-  // ---- in a picture that is narrower than 16:9 the camera sees more above and below, so that no lane is cut off
-  const WIDE = 16 / 9;
-  const WIDEST_DEG = 80;
-  let fitted = null;
-  let base = null;
-  const fit = () => {
-    const { camera, canvas, requestRender } = window.__viserMutable ?? {};
-    if (!camera?.isPerspectiveCamera || !canvas?.clientHeight) return;
-    // What is not ours, the stage has set.
-    if (camera.fov !== fitted) base = camera.fov;
-    const factor = Math.max(1, WIDE / (canvas.clientWidth / canvas.clientHeight));
-    const half = Math.atan(Math.tan((base * Math.PI) / 360) * factor);
-    const wanted = Math.min((half * 360) / Math.PI, Math.max(base, WIDEST_DEG));
-    if (camera.fov === wanted) return;
-    camera.fov = fitted = wanted;
-    camera.updateProjectionMatrix();
-    requestRender?.();
-  };
-  addEventListener("resize", () => setTimeout(fit, 50));
-  setInterval(fit, 400);
+  addEventListener("hexapods:taken", () => tellParent({ type: "hexapods:taken" }));
 
   // ---- files that are dragged over the picture are dropped on the page, which covers it as soon as it knows
   for (const type of ["dragenter", "dragover", "drop"]) {

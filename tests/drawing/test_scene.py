@@ -1,5 +1,6 @@
 """The stage drawn in a real viser, checked by the scene nodes that are there."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -210,17 +211,27 @@ def test_grids_of_all_sizes_can_be_drawn(server: RecordedViser, divisions: int) 
     assert sum(name.endswith("/fills") for name in scene_nodes(server)) == 2
 
 
+def lane_labels(server: RecordedViser) -> list[str]:
+    """Return the texts of the robots' labels."""
+    nodes = scene_nodes(server).items()
+    return [node["text"] for name, node in nodes if re.search(r"/lane\d/label$", name)]
+
+
 def test_photo_finish_shows_distances_and_is_removed(server: RecordedViser) -> None:
     spec, scene = race_of(2), StageScene(server)
     far = replace(frame_at_rest(spec).lanes[0], distance_m=0.375, rank=1)
     frame = replace(frame_at_rest(spec), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
 
     scene.draw(replace(frame, phase="photo-finish"))
-    texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
-    assert texts == ["1.  0.38\u00a0m", "2.  −0.01\u00a0m"]
+    bars = [name for name in scene_nodes(server) if "/photo/bar" in name]
+    assert (len(bars), lane_labels(server)) == (
+        2,
+        ["1. Q-learning\n0.38\u00a0m", "2. Greedy\n−0.01\u00a0m"],
+    )
 
     scene.draw(frame)
     assert not [name for name in scene_nodes(server) if "/photo" in name]
+    assert lane_labels(server)[0] == "Q-learning\n0.38\u00a0m, step 3"
 
 
 def test_photo_finish_is_redrawn_under_another_clock(server: RecordedViser) -> None:
@@ -229,8 +240,7 @@ def test_photo_finish_is_redrawn_under_another_clock(server: RecordedViser) -> N
     retimed = tuple(replace(lane, distance_m=0.25, rank=2) for lane in frame.lanes)
     scene.draw(replace(frame, phase="photo-finish", lanes=retimed))
 
-    texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
-    assert texts == ["2.  0.25\u00a0m"] * 3
+    assert [text.split("\n")[1] for text in lane_labels(server)] == ["0.25\u00a0m"] * 3
 
 
 def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: RecordedViser) -> None:

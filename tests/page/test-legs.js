@@ -11,7 +11,7 @@ const show = (lanes) => applyEvent("snapshot", { runs: [], stage: makeStage(), s
 
 beforeEach(() => {
   closeLegs();
-  page.camera.value = "leader";
+  page.camera.value = "directed";
   show([makeSceneLane({ rank: 2 }), makeSceneLane({ lane: 1, rank: 1 })]);
 });
 

@@ -104,7 +104,7 @@ test("a value that is none is told, with those that are valid where they are few
   assert.deepEqual(inVain("/?page=0"), ["page=0"]);
   assert.deepEqual(inVain("/?depth=deep"), ["depth=deep (valid: watch, try, study)"]);
   assert.deepEqual(inVain("/?tab=chart"), ["tab=chart (valid: board, train, world, why, gait, table, what-if)"]);
-  assert.deepEqual(inVain("/?camera=9"), ["camera=9 (valid: leader, free, 1 to 8)"]);
+  assert.deepEqual(inVain("/?camera=9"), ["camera=9 (valid: directed, free, 1 to 8)"]);
   assert.deepEqual(inVain("/?hidden=panel,stage"), ["hidden=panel,stage (valid: panel, card)"]);
   assert.deepEqual(inVain("/#nothing"), ["view=nothing (valid: race, runs, compare, experiments, lessons)"]);
   assert.equal(write(), "", "all is as it is without a link");
@@ -115,7 +115,7 @@ test("another view, tab or run is an entry of the history; all else changes the 
   change({ tab: "gait" });
   goBack();
   assert.deepEqual([page.tab.value, entries], [null, ["/?alpha=0.7&depth=study&camera=2"]]);
-  change({ depth: null, camera: "leader" });
+  change({ depth: null, camera: "directed" });
   change({ run: "a", ghost: "b" });
   change({ moment: 2 });
   change({ moment: 3 });

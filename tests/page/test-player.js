@@ -124,7 +124,7 @@ test("a held replay follows another robot at once", async () => {
   page.camera.value = "2";
   await wait(2);
   assert.deepEqual(drawn.at(-1), { type: "SetPositionMessage", name: "/world", position: [-1, -3, 0], owner: "" });
-  page.camera.value = "leader";
+  page.camera.value = "directed";
 });
 
 test("played again at its end it begins anew", async () => {

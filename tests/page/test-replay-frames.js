@@ -1,7 +1,9 @@
 // Frames of a replay: whatever was shown before, after a jump the 3D view shows that moment.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { approached, decode, Follower, momentOf, nextStep, SceneState, unpack } from "../../static/js/replay-frames.js";
+import {
+  approached, decode, Follower, momentOf, nextStep, SceneState, shotOf, unpack,
+} from "../../static/js/replay-frames.js";
 
 /** @import { Message } from "../../static/js/replay-frames.js" */
 
@@ -160,6 +162,28 @@ test("a camera that follows nothing leaves the world where it is", () => {
   assert.deepEqual(centred("leader").position, [-1, -2, 0]);
   assert.deepEqual(centred("2").position, [-3, -4, 0]);
   assert.deepEqual(centred("free").position, [-3, -4, 0]);
+  assert.deepEqual(centred("directed").position, [-1, -2, 0]);
+});
+
+test("the shot goes with the race: the start line until the first step is made, the race, its end", () => {
+  const of = (/** @type {string} */ kind, /** @type {string} */ phase, /** @type {number[]} */ steps) =>
+    ({ kind, phase, lanes: steps.map((step) => ({ step })) });
+  const shots = (/** @type {ReturnType<typeof of> | null} */ figures, target = "directed") => shotOf(figures, target);
+  assert.deepEqual(shots(null), { shot: "start", lane: null });
+  assert.deepEqual(shots(of("idle", "start-line", [0, 0])), { shot: "start", lane: null });
+  assert.deepEqual(shots(of("race", "race", [1, 1])), { shot: "start", lane: null });
+  assert.deepEqual(shots(of("race", "waiting", [2, 1])), { shot: "race", lane: null });
+  assert.deepEqual(shots(of("race", "photo-finish", [50, 36])), { shot: "finish", lane: null });
+  assert.deepEqual(shots(of("race", "finished", [50, 50])), { shot: "finish", lane: null });
+  assert.deepEqual(shots(of("training", "evaluation", [20])), { shot: "practice", lane: null });
+});
+
+test("a robot that is followed has a close shot, a free camera none", () => {
+  const race = { kind: "race", phase: "race", lanes: [{ step: 3 }, { step: 2 }] };
+  assert.deepEqual(shotOf(race, "2"), { shot: "close", lane: 1 });
+  assert.deepEqual(shotOf(race, "3"), { shot: "race", lane: null });
+  assert.deepEqual(shotOf(race, "free"), { shot: null, lane: null });
+  assert.deepEqual(shotOf({ ...race, kind: "training", lanes: [{ step: 3 }] }, "1"), { shot: "practice", lane: null });
 });
 
 test("frames that are pushed as text are those that are fetched", async () => {

@@ -35,7 +35,7 @@ class PageState(Record):
         depth: how much of the page is shown.
         tab: the open tab of the panel.
         pinned: a second tab beside it.
-        camera: its target: `leader`, `free`, or the number of a lane.
+        camera: its target: `directed` (or `leader`, the same), `free`, or the number of a lane.
         hidden: parts of the page that are hidden.
     """
 
@@ -49,7 +49,9 @@ class PageState(Record):
     depth: Depth | None = None
     tab: Tab | None = None
     pinned: Tab | None = None
-    camera: Literal["leader", "free", "1", "2", "3", "4", "5", "6", "7", "8"] | None = None
+    camera: Literal["directed", "leader", "free", "1", "2", "3", "4", "5", "6", "7", "8"] | None = (
+        None
+    )
     hidden: Annotated[tuple[Literal["panel", "card"], ...], MaxLen(2)] = ()
 
 

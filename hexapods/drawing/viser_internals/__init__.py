@@ -66,6 +66,8 @@ Assumed by `client`:
   and modifier; a click without a drag is sent through the worker as a `SceneNodeClickMessage`,
   with the number of the instance of a batched mesh, so that `static/viewer/clicks.js` can keep it.
 - camera_is_controlled: `cameraControl` of `__viserMutable` has the methods of `camera-controls` by
-  which `static/viewer/inspection.js` puts the camera where a scene fills the picture.
+  which `static/viewer/inspection.js` puts the camera where a scene fills the picture, and
+  `camera.js` hands it over. The scene's `onBeforeRender` is called when all nodes are where they
+  will be drawn, and before the camera is read, so that `camera.js` places it there.
 - batched_colors_are_linear: colours of batched meshes are taken as linear, all others as sRGB.
 """

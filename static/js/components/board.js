@@ -7,7 +7,7 @@ import { narrative, whyMarching } from "../headline.js";
 import { isLoser, isOver, isTimedOut, standings, timeline } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { isProjected } from "../page.js";
+import { aim, isProjected } from "../page.js";
 import { distanceOf, earlyEndOf } from "../narrative/moment.js";
 import { percent, shareOf } from "../scale.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
@@ -164,8 +164,8 @@ function LaneName({ row }) {
   const isFollowed = page.camera.value === target;
   return html`
     <button class="lane-name" aria-pressed=${isFollowed ? "true" : "false"}
-      title=${isFollowed ? "Follow the leader again" : `Follow with the camera, as key ${target} does`}
-      onClick=${() => (page.camera.value = isFollowed ? "leader" : target)}>${name}</button>
+      title=${isFollowed ? "All robots again" : `Follow with the camera, as key ${target} does`}
+      onClick=${() => aim(isFollowed ? "directed" : target)}>${name}</button>
   `;
 }
 
@@ -334,13 +334,13 @@ function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
   const robots = lanes.map((lane, n) =>
     [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
-  const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
+  const choices = [["directed", "Directed camera"], ...robots, ["free", "Free camera"]];
   const target = page.camera.value;
   if (!choices.some(([choice]) => choice === target)) choices.push([target, `Follow lane ${target}`]);
   return html`
-    <label class="choice" title="The robot that your camera follows; keys 1 to 8, 0 for a free camera">
+    <label class="choice" title="What your camera shows; keys 1 to 8 for a robot, C for all, 0 for a free camera">
       <span class="sr-only">Follow</span>
-      <select name="follow" onChange=${(/** @type {Changed} */ event) => (page.camera.value = event.target.value)}>
+      <select name="follow" onChange=${(/** @type {Changed} */ event) => aim(event.target.value)}>
         ${choices.map(([choice, words]) => html`
           <option value=${choice} selected=${choice === target}>${words}</option>
         `)}

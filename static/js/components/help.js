@@ -14,6 +14,8 @@ const pageKeys = () => [
   ["Home End", "to the start, and to what is computed"],
   ...(explainingTab.value ? [["E", "explain this step"]] : []),
   ["1 – 8", "follow the robot in that lane; 0 frees the camera"],
+  ["C", "directed camera: all robots, as the race goes"],
+  ["V", "the same from another side"],
   ["L", "the legs of the robot that is followed; arrows choose, Enter opens"],
   ["R", "press the main button"],
   ["D", "show more: Watch, Try, Study"],

@@ -2,7 +2,7 @@
 import { runPrimaryAction, togglePause } from "../actions.js";
 import { actionOfKey } from "../features.js";
 import { page } from "../page-state.js";
-import { closeLegs, helpIsOpen, isStill, legsAreOpen, openLegs, shortcuts } from "../page.js";
+import { aim, closeLegs, helpIsOpen, isStill, legsAreOpen, nextAngle, openLegs, shortcuts } from "../page.js";
 import { isOwn, stepReplay } from "../player.js";
 import { isOperator } from "../selectors.js";
 import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
@@ -18,7 +18,9 @@ const RACE_KEYS = {
   // A spectator has no stage to hold: as the play button, it begins a replay of the page's own.
   " ": () => (isOperator.value ? togglePause : toggleTime)(),
   "r": runPrimaryAction,
-  "0": () => (page.camera.value = "free"),
+  "0": () => aim("free"),
+  "c": () => aim("directed"),
+  "v": nextAngle,
   ",": () => isOwn.value && stepReplay(-1),
   ".": () => isOwn.value && stepReplay(1),
   "[": () => seekToMark(-1),
@@ -41,7 +43,7 @@ function press(pressed) {
   // All but the help act on the race, which a reader of another view does not see.
   if (page.view.value !== "race") return false;
   const isOfCamera = /^[1-8]$/.test(key) && !isStill.value;
-  if (isOfCamera) page.camera.value = key;
+  if (isOfCamera) aim(key);
   // What a feature shows in place of the race has its own keys alone.
   const action = actionOfKey(key) ?? (isStill.value ? undefined : RACE_KEYS[key]);
   action?.();

@@ -5,8 +5,8 @@ import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { narrative } from "../headline.js";
 import {
-  clickedCell, clickedNode, closeLegs, drawHere, inspection, isProjected, isStill, legPoints, legsAreOpen, legsOf,
-  picked, places, shownTheme, turnedByHand,
+  aim, clickedCell, clickedNode, closeLegs, directions, drawHere, inspection, isProjected, isStill, isTaken, legPoints,
+  legsAreOpen, legsOf, picked, places, shownTheme, takeCamera, turnedByHand,
 } from "../page.js";
 import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, isOwn, plan, playback, replayProblem } from "../player.js";
@@ -42,10 +42,10 @@ export function Stage() {
   useEffect(() => {
     const message = {
       type: "hexapods:show", theme: shownTheme.value, lanes: colours.split(" "),
-      covered: covered.value, isProjected: isProjected.value, legsOf: legsOf.value,
+      covered: covered.value, isProjected: isProjected.value, legsOf: legsOf.value, ...directions.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value]);
+  }, [shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value, directions.value]);
 
   useEffect(() => {
     const message = { type: "hexapods:inspect", inspection: inspection.value };
@@ -72,7 +72,14 @@ const OverThePlayed = () => html`
   <${StageLabels} />
   ${legsAreOpen.value && html`<${Loaded} name="legs" load=${loadLegs} />`}
   <${StageNotes} />
+  <${DirectedCamera} />
   <${ReplayProblem} />
+`;
+
+/** The way back for who has turned the picture. */
+const DirectedCamera = () => isTaken.value && html`
+  <button class="secondary compact directed-camera" onClick=${() => aim("directed")}
+    title="Show all robots again, as key C does">Directed camera</button>
 `;
 
 /** Whether a replay of this page's own is drawn, which goes on without the server as far as it is loaded. */
@@ -113,6 +120,7 @@ function useFrame(frame, setStatus) {
       },
       "hexapods:legs": ({ legs }) => (legPoints.value = legs),
       "hexapods:places": ({ places: now }) => (places.value = now),
+      "hexapods:taken": takeCamera,
       "hexapods:touched": () => (turnedByHand.value += 1),
       "hexapods:status": ({ status }) => {
         setStatus(status);

@@ -1,6 +1,6 @@
 // Plays a replay out of the file that it is in, without a server. hexapods/exports/replay_page.py puts it there, with
 // the modules that it imports, the frames of the run and viser's client. The interface is described in docs/exports.md.
-import { Follower, inRecording, SceneState, unpack } from "../replay-frames.js";
+import { Follower, inRecording, SceneState, shotOf, unpack } from "../replay-frames.js";
 
 /** @import { Frames } from "../replay-frames.js" */
 /** @import { ReplayPlan } from "../types.js" */
@@ -19,7 +19,7 @@ const SAME_S = 1e-6;
 /** The camera's coordinates may be as far from what it follows, and its place from what it looks at as near [m]. */
 const [FARTHEST_M, NEAREST_M] = [100, 0.01];
 /** What the camera may follow, but lanes, which are numbered from 1. */
-const [LEADER, FREE] = ["leader", "free"];
+const [DIRECTED, LEADER, FREE] = ["directed", "leader", "free"];
 
 /** @param {string} id */
 const textOf = (id) => document.getElementById(id)?.textContent ?? null;
@@ -54,7 +54,11 @@ class Player extends EventTarget {
   #segments = new Map();
   #shown = { number: -1, index: -1 };
   #follower = new Follower();
-  #followed = LEADER;
+  #followed = DIRECTED;
+  /** The figures of the moment that is shown. @type {any} */
+  #figures = null;
+  /** From which of its sides a shot is taken. */
+  #angle = 0;
   #lastTick = 0;
   #toldAt = -Infinity;
 
@@ -105,16 +109,19 @@ class Player extends EventTarget {
    * Move the camera; what is not given stays. Nothing happens if a value is not valid.
    * @param {{ position?: number[], look_at?: number[], follow?: string | number }} camera
    *   Its place and what it looks at, (x, y, z) [m] from what it follows on the ground: x to the right, y along the
-   *   track, z up; and what it follows: "leader", "free" or the number of a lane, from 1.
+   *   track, z up; and what it follows: "directed", where it moves by itself, "leader", "free" or the number of a lane,
+   *   from 1.
    */
   setCamera({ position, look_at, follow }) {
     const places = [position, look_at].filter((place) => place !== undefined);
-    const target = follow === undefined ? this.#followed : String(follow);
-    const isThere = [LEADER, FREE, ...replay.step_ends_s.map((_, lane) => String(lane + 1))].includes(target);
+    const isPlaced = places.length > 0 && this.#followed === DIRECTED;
+    const target = follow === undefined ? (isPlaced ? LEADER : this.#followed) : String(follow);
+    const isThere = [DIRECTED, LEADER, FREE, ...replay.step_ends_s.map((_, lane) => String(lane + 1))].includes(target);
     if (!isThere || !places.every(isPlace)) return;
     if (position && look_at && Math.hypot(...position.map((x, axis) => x - look_at[axis])) < NEAREST_M) return;
     if (target !== this.#followed) {
       this.#followed = target;
+      this.#direct();
       this.#shown = { number: -1, index: -1 }; // the frame is drawn again, around something else
     }
     const messages = [];
@@ -122,6 +129,22 @@ class Player extends EventTarget {
     if (look_at) messages.push({ type: "SetCameraLookAtMessage", look_at, initial: false });
     if (messages.length) emit("hexapods:draw", { messages });
   }
+
+  /** Take the directed camera from another of its sides. */
+  nextAngle() {
+    this.#angle += 1;
+    this.#direct();
+  }
+
+  /** Let the camera know its shot: only the directed camera has any. */
+  #direct() {
+    const shot = shotOf(this.#figures, this.#followed === DIRECTED ? DIRECTED : FREE);
+    emit("hexapods:show", { ...shot, angle: this.#angle });
+    this.dispatchEvent(new Event("camera"));
+  }
+
+  /** Whether the camera is the viewer's, or that of the page around this one. */
+  get isTaken() { return this.#followed !== DIRECTED; }
 
   /** Draw in viser's client, which has an empty scene. */
   async open() {
@@ -164,7 +187,11 @@ class Player extends EventTarget {
     emit("hexapods:draw", { messages: [...messages, centring] });
     this.#shown = { number, index };
     const scene = /** @type {any} */ (loaded.frames.slice(0, index + 1).findLast((earlier) => earlier.scene)?.scene);
-    if (scene) emit("hexapods:scene", scene);
+    if (scene) {
+      this.#figures = scene;
+      this.#direct();
+      emit("hexapods:scene", scene);
+    }
     return true;
   }
 
@@ -222,6 +249,9 @@ const make = (tag, properties = {}, ...children) => {
 const play = make("button", { type: "button", onclick: () => (player.paused ? player.play() : player.pause()) });
 const stepButton = (/** @type {number} */ direction, /** @type {string} */ label, /** @type {string} */ sign) =>
   make("button", { type: "button", ariaLabel: label, title: label, onclick: () => player.step(direction) }, sign);
+const directed = make("button",
+  { type: "button", className: "directed", hidden: true, onclick: () => player.setCamera({ follow: DIRECTED }) },
+  "Directed camera");
 const slider = make("input",
   { type: "range", min: "0", max: String(end_s), step: "any", ariaLabel: "Moment of the run" });
 slider.addEventListener("input", () => player.seek(slider.valueAsNumber));
@@ -229,7 +259,7 @@ const clock = make("output", { className: "clock" });
 const speeds = make("select", { ariaLabel: "Speed", onchange: () => player.setSpeed(Number(speeds.value)) },
   ...SPEEDS.map((times) => make("option", { value: String(times), selected: times === FIRST_SPEED }, `× ${times}`)));
 const bar = make("div", { className: "player" }, play,
-  stepButton(-1, "One robot step back", "◂"), stepButton(1, "One robot step on", "▸"), slider, clock, speeds);
+  stepButton(-1, "One robot step back", "◂"), stepButton(1, "One robot step on", "▸"), slider, clock, speeds, directed);
 const heading = make("p", { className: "replay-title" }, make("b", {}, replay.title), " ",
   ...replay.notes.map((note) => make("span", {}, note)));
 
@@ -248,6 +278,8 @@ function showCovered() {
 }
 
 player.addEventListener("timeupdate", showState);
+player.addEventListener("camera", () => (directed.hidden = !player.isTaken));
+addEventListener("hexapods:taken", () => player.setCamera({ follow: LEADER }));
 addEventListener("hexapods:scene", (event) => {
   const { detail } = /** @type {CustomEvent} */ (event);
   emit("hexapods:show", { lanes: detail.lanes.map((/** @type {{ color: string }} */ { color }) => color) });
@@ -258,6 +290,8 @@ addEventListener("keydown", (event) => {
   if (event.key === " ") play.click();
   else if (event.key === ",") player.step(-1);
   else if (event.key === ".") player.step(1);
+  else if (event.key === "c") player.setCamera({ follow: DIRECTED });
+  else if (event.key === "v") player.nextAngle();
 });
 
 // ---- the theme: of the address, or of the system

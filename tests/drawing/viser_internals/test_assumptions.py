@@ -474,13 +474,19 @@ def test_clicks_go_through_the_worker(client: str) -> None:
 
 
 def test_camera_is_controlled(client: str) -> None:
-    script = (assets.static_dir() / "viewer" / "inspection.js").read_text("utf-8")
-    methods = set(re.findall(r"cameraControl\.(\w+)\(", script))
+    folder = assets.static_dir() / "viewer"
+    scripts = [(folder / name).read_text("utf-8") for name in ("inspection.js", "camera.js")]
+    methods = set(re.findall(r"cameraControl\.(\w+)\(", "".join(scripts)))
 
     assert "cameraControl:null" in client
     assert {"setLookAt", "setFocalOffset", "rotate", "getPosition", "getTarget"} < methods
     for method in methods:
         assert re.search(rf"[}};]{method}\([\w,=!]*\)\{{", client), method
+    # What is drawn is as the camera is then, and the scene as it is in this picture.
+    assert re.search(
+        r"updateMatrixWorld\(\).{,200}isScene===!0&&\w+\.onBeforeRender\(.{,200}projectionMatrix",
+        client,
+    )
 
 
 def test_batched_colors_are_linear(server: RecordedViser, page: Page) -> None:

@@ -96,7 +96,7 @@ export function pageAsState() {
     run: run.peek(), ghost: ghost.peek(), moment: moment.peek(), tab: tab.peek(), pinned: pinned.peek(),
     clock: run.peek() && clock.peek() !== "paper" ? clock.peek() : null,
     end: run.peek() && end.peek() !== "time-out" ? end.peek() : null,
-    camera: camera.peek() === "leader" ? null : camera.peek(),
+    camera: camera.peek() === "directed" ? null : camera.peek(),
     hidden: hiddenParts.length > 0 ? hiddenParts : null,
     form: Object.keys(form).length > 0 ? form : null,
   };

@@ -3,7 +3,7 @@ import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../../../js/components/elements.js";
 import { page } from "../../../js/page-state.js";
-import { shownTheme } from "../../../js/page.js";
+import { aim, directions, isTaken, shownTheme, takeCamera } from "../../../js/page.js";
 import { isShownToEnd } from "../../../js/narrative/moment.js";
 import { isAway, scene } from "../../../js/store.js";
 import {
@@ -57,6 +57,7 @@ export function Picture({ isProjected = false }) {
       frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, globalThis.origin);
     const onMessage = (/** @type {MessageEvent} */ { origin, source: from, data }) => {
       if (origin !== globalThis.origin || from !== frame.current?.contentWindow) return;
+      if (data?.type === "hexapods:taken") takeCamera();
       if (data?.type !== "hexapods:status") return;
       setStatus(data.status);
       if (data.status === "connected") drawIn(send);
@@ -65,12 +66,15 @@ export function Picture({ isProjected = false }) {
     return () => removeEventListener("message", onMessage);
   }, []);
   useEffect(() => {
-    const message = { type: "hexapods:show", theme: shownTheme.value, isProjected };
+    const message = { type: "hexapods:show", theme: shownTheme.value, isProjected, ...directions.value };
     frame.current?.contentWindow?.postMessage(message, globalThis.origin);
-  }, [shownTheme.value, status]);
+  }, [shownTheme.value, status, directions.value]);
   return html`
     <div class="room-picture" data-status=${status}>
       <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>
+      ${isTaken.value && html`
+        <button class="secondary compact directed-camera" onClick=${() => aim("directed")}>Directed camera</button>
+      `}
       ${status === "loading" && html`<p class="over" role="status">The robot walks to the start line…</p>`}
     </div>
   `;
