@@ -1,25 +1,40 @@
-// The projector: code and QR, the card and its question, dots as they land, predictions beside results.
-import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { getCurves } from "../../../js/api.js";
+// The projector: code and QR, the card and its question, the robots, and the act that reveals what came of it.
+import { effect, signal } from "@preact/signals";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
-import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
+import { codeInGroups, metres, shortAddress } from "../../../js/format.js";
 import { Away } from "./join.js";
-import { Axes, lineOf, stepsOf } from "./chart.js";
+import { actOf } from "./acts/index.js";
+import { walkedRow } from "./acts/distances.js";
 import { Picture } from "./picture.js";
-import { KINDS } from "./questions.js";
-import { isShownToEnd } from "../../../js/narrative/moment.js";
+import { earlyEndOf, isShownToEnd } from "../../../js/narrative/moment.js";
 import { agentOf } from "../../../js/settings.js";
-import { scene } from "../../../js/store.js";
+import { runs, scene } from "../../../js/store.js";
 import { isRevealed, room, shownResults } from "./room.js";
 import { axisOf } from "./scores.js";
 
-/** @import { Ask, CardResults, Classroom, LessonCard, ResultEntry } from "../../../js/types.js" */
+/** @import { Signal } from "@preact/signals" */
+/** @import { Ask, Classroom } from "../../../js/types.js" */
+/** @import { Act, Facts } from "./acts/index.js" */
 
 /** Size of the dots, against those of a strip in a panel. */
 const DOTS = 4;
+
+/** Ids of the runs that this page has shown to their end. @type {Signal<Set<string>>} */
+const shownToEnd = signal(new Set());
+effect(() => {
+  const id = room.value?.spotlight ?? null;
+  if (id !== null && isShownToEnd(scene.value, id) && !shownToEnd.peek().has(id)) {
+    shownToEnd.value = new Set(shownToEnd.peek()).add(id);
+  }
+});
+
+/** Whether a run on the stage is still on its way: neither shown to its end, nor lost. @param {string | null} id */
+const isOnItsWay = (id) =>
+  id !== null && !shownToEnd.value.has(id) && earlyEndOf(runs.value.get(id) ?? null) === null;
 
 /** Whether the class still gathers: nobody has done anything on the first card. @param {Classroom} classroom */
 const isLobby = ({ card, predicted, started, revealed, state }) =>
@@ -27,23 +42,59 @@ const isLobby = ({ card, predicted, started, revealed, state }) =>
 
 export function Projector() {
   const classroom = /** @type {Classroom} */ (room.value);
-  const isBefore = isLobby(classroom);
+  const { state } = classroom;
+  const facts = {
+    classroom, results: shownResults.value, isRevealed: isRevealed.value, isOnItsWay: isOnItsWay(classroom.spotlight),
+  };
+  const act = state === "ended" ? null : actOf(facts);
   return html`
-    <main class=${`projector ${isBefore ? "lobby" : classroom.state}`}>
+    <main class=${`projector ${state}`}>
       <${Away} />
-      ${classroom.state === "frozen" && html`<${Frozen} />`}
-      <${Door} classroom=${classroom} />
-      ${classroom.state === "ended"
-        ? html`<article class="shown-card"><h1>${classroom.title}</h1><p>The lesson has ended.</p></article>`
-        : html`<${Shown} classroom=${classroom} />`}
-      ${!isBefore && classroom.state !== "ended" && html`<${Side} classroom=${classroom} key=${classroom.card} />`}
+      ${state === "frozen" && html`<${Frozen} classroom=${classroom} />`}
+      ${state === "ended" ? html`<${Ended} classroom=${classroom} />`
+        : html`<${Layout} facts=${facts} act=${act} />`}
     </main>
   `;
 }
 
-/** The class is stopped: told so large that nobody looks at a phone to know. */
-const Frozen = () => html`
-  <p class="frozen-note" role="status"><${Icon} name="pause" />Stop. Look to the front.</p>
+/** @param {{ classroom: Classroom }} props */
+const Ended = ({ classroom }) => html`
+  <article class="shown-card lesson-end"><h1>${classroom.title}</h1><p>The lesson has ended.</p></article>
+`;
+
+/** The class is stopped: told so large that nobody looks at a phone to know. @param {{ classroom: Classroom }} props */
+const Frozen = ({ classroom }) => html`
+  <div class="frozen-note">
+    <p role="status"><${Icon} name="pause" />Stop. Look to the front.</p>
+    <p class="code">${codeInGroups(classroom.code)}</p>
+  </div>
+`;
+
+/**
+ * The parts that a layout places; the robots stay where they are in the page, as their picture would load anew.
+ * @param {{ facts: Facts, act: Act | null }} props
+ */
+function Layout({ facts, act }) {
+  const { classroom } = facts;
+  const { shown } = classroom;
+  const named = act && `act act-${act.name} ${shown.go ? "" : "no-run"}`;
+  const layout = named ?? (isLobby(classroom) ? "lobby" : "asks");
+  return html`
+    <div class=${`layout ${layout}`}>
+      ${act ? html`<${Head} classroom=${classroom} />` : html`<${Card} classroom=${classroom} key=${classroom.card} />`}
+      <${Door} classroom=${classroom} />
+      <section class="robots" aria-label="The robots"><${Picture} isProjected=${true} /></section>
+      ${act
+        ? html`<${Place} act=${act} facts=${facts} key=${act.name} />`
+        : html`<${Counts} classroom=${classroom} key=${`counts ${classroom.card}`} />`}
+      ${act && html`<${Revealed} classroom=${classroom} />`}
+    </div>
+  `;
+}
+
+/** @param {{ act: Act, facts: Facts }} props */
+const Place = ({ act, facts }) => html`
+  <section class="act-place" aria-label="What came of it"><${act.Show} ...${facts} /></section>
 `;
 
 /** Where to join: large while the class gathers, small from then on. @param {{ classroom: Classroom }} props */
@@ -86,141 +137,74 @@ function useFit() {
 }
 
 /** @param {{ classroom: Classroom }} props */
-const Shown = ({ classroom }) => html`
+const Where = ({ classroom }) => html`
+  <p class="where">${classroom.title} · ${classroom.card + 1} of ${classroom.cards}</p>
+`;
+
+/** The card before its reveal. @param {{ classroom: Classroom }} props */
+const Card = ({ classroom }) => html`
   <article class="shown-card" aria-labelledby="shown-title" ref=${useFit()}>
-    <p class="where">${classroom.title} · ${classroom.card + 1} of ${classroom.cards}</p>
+    <${Where} classroom=${classroom} />
     ${classroom.shown.title && html`<h1 id="shown-title">${classroom.shown.title}</h1>`}
-    ${classroom.spotlight !== null && html`<${Lit} classroom=${classroom} />`}
     <${Prose} text=${isRevealed.value && classroom.html.reveal ? classroom.html.reveal : classroom.html.text} />
     ${classroom.shown.ask && html`<${Asked} classroom=${classroom} ask=${classroom.shown.ask} />`}
   </article>
 `;
 
-/** The question, and how many have locked an answer. @param {{ classroom: Classroom, ask: Ask }} props */
-function Asked({ classroom, ask }) {
-  const values = (shownResults.value?.entries ?? [])
-    .map(({ prediction }) => prediction).filter((value) => value !== null);
-  const { tally } = KINDS[ask.kind];
-  const most = Math.max(1, values.length);
-  return html`
-    <section class="asked" aria-label="Question">
-      <${Prose} text=${classroom.html.ask} />
-      ${tally && html`
-        <ul class=${`asked-choices ${isRevealed.value ? "counted" : ""}`}>
-          ${tally(ask, isRevealed.value ? values : []).map(([choice, number]) => html`
-            <li key=${choice} class=${isRevealed.value && shownResults.value?.answer === choice ? "right" : ""}
-              style=${{ "--share": `${(100 * number) / most}%` }}>
-              <span>${agentOf(choice).title}</span>${isRevealed.value && html`<b class="num">${number}</b>`}
-            </li>
-          `)}
-        </ul>
-      `}
-    </section>
-  `;
-}
+/** @param {{ classroom: Classroom, ask: Ask }} props */
+const Asked = ({ classroom, ask }) => html`
+  <section class="asked" aria-label="Question">
+    <${Prose} text=${classroom.html.ask} />
+    ${(ask.choices ?? []).length > 0 && html`
+      <ul class="asked-choices">
+        ${(ask.choices ?? []).map((choice) => html`<li key=${choice}>${agentOf(choice).title}</li>`)}
+      </ul>
+    `}
+  </section>
+`;
 
-// ---- beside the card: counts, dots, the run in the spotlight
+/** Above an act: the card's title and its question. @param {{ classroom: Classroom }} props */
+const Head = ({ classroom }) => html`
+  <header class="act-head">
+    <${Where} classroom=${classroom} />
+    ${classroom.shown.title && html`<h1>${classroom.shown.title}</h1>`}
+    ${classroom.html.ask && html`<${Prose} text=${classroom.html.ask} />`}
+  </header>
+`;
 
+/** Beside an act: what the lesson says to it. @param {{ classroom: Classroom }} props */
+const Revealed = ({ classroom }) => html`
+  <aside class="reveal-text" aria-label="What it means" ref=${useFit()}>
+    ${isRevealed.value && classroom.html.reveal && html`<${Prose} text=${classroom.html.reveal} />`}
+  </aside>
+`;
+
+/** Below the robots: who has locked and started, and the dots that have landed. */
 /** @param {{ classroom: Classroom }} props */
-function Side({ classroom }) {
+function Counts({ classroom }) {
   const { shown, predicted, participants, started } = classroom;
-  const results = shownResults.value;
-  if (isRevealed.value && shown.ask && KINDS[shown.ask.kind].onChart) {
-    return html`<${Beside}><${Lines} card=${shown} entries=${results?.entries ?? []} /><//>`;
-  }
-  const hasDots = (results?.distances_m ?? []).length > 0;
+  const hasDots = (shownResults.value?.distances_m ?? []).length > 0;
   const parts = [];
   if (shown.ask && !isRevealed.value) parts.push(html`<${Of} number=${predicted} all=${participants} word="locked" />`);
-  if (hasDots) parts.push(html`<${Landing} card=${shown} />`);
-  else if (shown.go) {
-    parts.push(html`<${Of} number=${started} all=${participants} word="started" />`);
-  }
-  return parts.length > 0 && html`<${Beside}>${parts}<//>`;
+  if (shown.go && !hasDots) parts.push(html`<${Of} number=${started} all=${participants} word="started" />`);
+  if (hasDots) parts.push(html`<${Landing} classroom=${classroom} />`);
+  return parts.length > 0 && html`<section class="beside" aria-label="The class">${parts}</section>`;
 }
-
-/** @param {{ children: import("preact").ComponentChildren }} props */
-const Beside = ({ children }) => html`<section class="beside" aria-label="The class">${children}</section>`;
 
 /** @param {{ number: number, all: number, word: string }} props */
 const Of = ({ number, all, word }) => html`
   <p class="locked-count" role="status"><b class="num">${number}</b> of ${all} ${word}</p>
 `;
 
-/** The run of a participant that the teacher shows to all. @param {{ classroom: Classroom }} props */
-function Lit({ classroom }) {
-  const entry = shownResults.value?.entries.find(({ run }) => run?.id === classroom.spotlight);
-  // Not before its picture is there.
-  const distance_m = isShownToEnd(scene.value, classroom.spotlight) ? entry?.run?.distance_m ?? null : null;
-  return html`
-    <div class="lit">
-      <${Picture} isProjected=${true} key=${classroom.spotlight} />
-      <p>
-        <b>${entry?.name ?? "One of you"}</b>
-        ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
-      </p>
-    </div>
-  `;
-}
-
-/**
- * The distances as they land, and after the reveal what was predicted on the same axis.
- * @param {{ card: LessonCard }} props
- */
-function Landing({ card: { ask = null, go } }) {
-  const { distances_m, interval, entries } = /** @type {CardResults} */ (shownResults.value);
-  const values = entries.map(({ prediction }) => prediction).filter((prediction) => prediction !== null);
-  const predicted = (isRevealed.value && ask && KINDS[ask.kind].metresOf?.(ask, values)) || null;
-  const { low, high } = axisOf([...distances_m, ...(predicted ?? [])]);
-  const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
-  const greatest = { low, high, size: DOTS };
+/** The distances as they land. @param {{ classroom: Classroom }} props */
+function Landing({ classroom }) {
+  const { title, values, typical } = /** @type {NonNullable<ReturnType<typeof walkedRow>>} */ (
+    walkedRow(classroom, shownResults.value));
   return html`
     <div class="landing">
-      <p class="typical-figure">
-        <b class="num">${metres(interval?.iqm_m)}</b>
-        <span>
-          typical of ${count(distances_m.length, go === "what-if" ? "class of thirty robots" : "robot")}
-          ${interval && interval.low_m !== null && html`
-            <br />95 %: ${interval.low_m.toFixed(2)} to ${metres(interval.high_m)}
-          `}
-        </span>
-      </p>
-      ${predicted && predicted.length > 0 && html`
-        <h2>Predicted</h2>
-        <${DotStrip} ...${greatest} label=${`${predicted.length} predictions`} points=${predicted} height=${24}
-          color="var(--warn)" />
-        <h2>Walked</h2>
-      `}
-      <${DotStrip} ...${greatest} label=${`${distances_m.length} distances, typically ${metres(interval?.iqm_m)}`}
-        points=${distances_m} typical=${typical} axis=${metres} />
+      <p>${title}</p>
+      <${DotStrip} ...${axisOf(values)} size=${DOTS} label=${title} points=${values} typical=${typical}
+        axis=${metres} />
     </div>
-  `;
-}
-
-/**
- * Predicted points and curves over the learning curves of the class.
- * @param {{ card: LessonCard, entries: ResultEntry[] }} props
- */
-function Lines({ card, entries }) {
-  const [curves, setCurves] = useState(/** @type {number[][][]} */ ([]));
-  const ids = entries.flatMap(({ run }) =>
-    (run?.state === "finished" && run.kind === "training" ? [run.id] : []));
-  useEffect(() => {
-    if (ids.length === 0) return;
-    getCurves(ids).then(({ curves: loaded }) => setCurves(loaded.map(({ steps: xs, distances_m }) =>
-      xs.map((x, n) => [x, distances_m[n] ?? 0]))), () => {});
-  }, [ids.join()]);
-  const steps = stepsOf(card);
-  const predicted = entries.map(({ prediction }) => prediction).filter(Array.isArray);
-  const { onChart } = KINDS[/** @type {Ask} */ (card.ask).kind];
-  return html`
-    <svg class="draw-chart lines" viewBox="0 0 340 200" role="img"
-      aria-label=${`${predicted.length} predictions over ${curves.length} learning curves`}>
-      <${Axes} steps=${steps} />
-      ${curves.filter((curve) => curve.length > 1).map((curve) => html`
-        <path class="actual" d=${`M${lineOf(curve, steps)}`} />
-      `)}
-      ${predicted.map((prediction) => onChart?.(prediction, steps))}
-    </svg>
-    <p class="key"><span class="predicted-key">predicted</span><span class="actual-key">learned</span></p>
   `;
 }

@@ -1,0 +1,73 @@
+// What fills the projector, and where its dots and curves lie.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { actOf } from "../../../static/features/classroom/room/acts/index.js";
+import { meanCurve } from "../../../static/features/classroom/room/acts/mean-curve.js";
+import { plotAxis, stackedDots } from "../../../static/features/classroom/room/acts/plot-geometry.js";
+import { predictionsOf, winsOf } from "../../../static/features/classroom/room/acts/predictions.js";
+
+/** Facts of a card, as far as an act is chosen by them. @param {any} changes @returns {any} */
+const facts = ({ shown = {}, spotlight = null, ...changes } = {}) => ({
+  classroom: { shown, spotlight }, results: { entries: [], distances_m: [] }, isRevealed: true, isOnItsWay: false,
+  ...changes,
+});
+
+test("each kind of question is revealed by an act of its own, and none before the reveal", () => {
+  for (const kind of ["choice", "number", "point", "curve"]) {
+    assert.equal(actOf(facts({ shown: { ask: { kind } } }))?.name, kind);
+    assert.equal(actOf(facts({ shown: { ask: { kind } }, isRevealed: false })), null);
+  }
+});
+
+test("a card that asks nothing is revealed by its distances, if there are any", () => {
+  assert.equal(actOf(facts({ shown: { go: "what-if" } })), null);
+  assert.equal(actOf(facts({ results: { entries: [], distances_m: [0.2] } }))?.name, "distances");
+});
+
+test("a run that the teacher shows goes before all else", () => {
+  const lit = { spotlight: "run1", shown: { ask: { kind: "number" } } };
+  assert.equal(actOf(facts(lit))?.name, "run");
+  assert.equal(actOf(facts({ ...lit, isRevealed: false }))?.name, "run");
+});
+
+test("an axis holds all values, from zero or below; over orders of magnitude it has powers of ten", () => {
+  const near = plotAxis([0.2, 0.5]);
+  assert.equal(near.low, 0);
+  assert.ok(near.high > 0.5);
+  assert.ok(plotAxis([-0.1, 0.4]).at(-0.1) > 0, "the least value is not on the edge");
+  const wide = plotAxis([3, 729, 90_000]);
+  assert.deepEqual(wide.marks, [1, 10, 100, 1000, 10_000, 100_000]);
+  assert.ok(Math.abs(wide.at(1000) - 0.6) < 1e-9);
+  assert.ok(plotAxis([0.3, 0.3]).at(0.3) <= 1, "equal values have an axis, too");
+});
+
+test("dots stand on each other, and become smaller until all fit into their place", () => {
+  const { radius, dots } = stackedDots([0.5, 0.5, 0], 400, 300, 12);
+  assert.equal(radius, 12);
+  assert.ok(dots[1].y > dots[0].y && dots[1].x === dots[0].x, "the second lies on the first");
+  const many = stackedDots(Array.from({ length: 40 }, () => 0.5), 400, 100, 12);
+  assert.ok(many.radius < 12);
+  for (const { x, y } of many.dots) {
+    assert.ok(x >= many.radius && x <= 400 - many.radius && y + many.radius <= 100, `${x} ${y}`);
+  }
+});
+
+test("the typical curve is the interquartile mean at the steps that all have", () => {
+  const curves = [0, 0.2, 0.4, 9].map((y) => [[50, y], [100, y + 1]]);
+  const [first, second] = meanCurve(curves);
+  assert.equal(first[0], 50);
+  assert.ok(Math.abs(first[1] - 0.3) < 1e-9 && Math.abs(second[1] - 1.3) < 1e-9, "the least and the greatest left out");
+  assert.deepEqual(meanCurve([[[50, 1]], [[100, 1]]]), []);
+  assert.deepEqual(meanCurve([]), []);
+});
+
+test("races are counted by who won them, and answers as far as there are any", () => {
+  const results = /** @type {any} */ ({ entries: [
+    { prediction: "greedy", run: { winners: ["greedy"] } }, { prediction: null, run: null },
+    { prediction: 0, run: { winners: ["greedy", "q-learning"] } },
+  ] });
+  const { by, races } = winsOf(results);
+  assert.deepEqual([by.get("greedy"), by.get("q-learning"), races], [2, 1, 2]);
+  assert.deepEqual(predictionsOf(results), ["greedy", 0]);
+  assert.deepEqual(predictionsOf(null), []);
+});
