@@ -12,8 +12,9 @@ loaded when the first of them is used. `hexapods.environment` is the Gymnasium e
 Modules beside the packages, each of which has a map in its docstring:
 
 - `public`: the names of `hx`. Verbs and their results: `practice`, `changes`, `trainings`; `races`,
-  `race_tables`; `repetition`; `benchmarks`; `viewing`; `policies`, `result_table`. `arguments`:
-  what a person may write for an agent, a robot or a world. `interruption`: Ctrl-C.
+  `race_tables`; `repetition`, `comparisons`; `benchmarks`; `viewing`; `policies`,
+  `result_table`. `arguments`: what a person may write for an agent, a robot or a world.
+  `interruption`: Ctrl-C.
 - `assembly`: from a config to a simulator and agents.
 - `assets`: where models, page and documents are; `offline_page`: parts of the page in one file;
   `files`: atomic writes and locks; `machine`: cores and memory; `extras`: optional packages;

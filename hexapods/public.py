@@ -40,6 +40,7 @@ from hexapods.arguments import recommended_agent as recommended_agent
 from hexapods.benchmarks import Benchmark as Benchmark
 from hexapods.benchmarks import TaskScore as TaskScore
 from hexapods.benchmarks import benchmark as benchmark
+from hexapods.comparisons import compare as compare
 from hexapods.domain import gait as _gait
 from hexapods.domain.disturbances import DeadBand as DeadBand
 from hexapods.domain.disturbances import Delay as Delay
@@ -71,6 +72,8 @@ from hexapods.domain.settings import Setting as Setting
 from hexapods.domain.simulator import Motion as Motion
 from hexapods.domain.types import Action as Action
 from hexapods.domain.world import World as World
+from hexapods.experiments.comparison import Compared as Compared
+from hexapods.experiments.comparison import Comparison as Comparison
 from hexapods.experiments.folder import ResultNotStored as ResultNotStored
 from hexapods.experiments.worker import ClusterLost as ClusterLost
 from hexapods.experiments.worker import Outcome as Outcome

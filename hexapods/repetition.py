@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, Union
 
+import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.agents.registry import AgentClass
@@ -34,11 +35,13 @@ from hexapods.domain.robot_library import RobotLibrary
 from hexapods.domain.simulator import RewardKind
 from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
+from hexapods.experiments.comparison import Comparison, Unit
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.failures import failed_trials, failures_sentence
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.local_workers import defines_agents
 from hexapods.experiments.progress import Progress
+from hexapods.experiments.setting_comparison import Distance, compare_settings
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import Outcome
 from hexapods.files import path_of
@@ -122,6 +125,34 @@ class Experiment:
     def failed(self) -> Mapping[str, str]:
         """Why each trial without a distance failed, by the trial in words."""
         return {trial["label"]: trial["reason"] for trial in failed_trials(self.summary["trials"])}
+
+    def compare(
+        self,
+        a: str,
+        b: str,
+        *,
+        distance: Distance = "total",
+        unit: Unit = "m",
+        rng: np.random.Generator | None = None,
+    ) -> Comparison:
+        """Compare two settings; `print` of the result says it in sentences.
+
+        In a league or recovery all agents of a seed walk with the same robot, so that settings are
+        paired by seed. Elsewhere each setting has other random numbers.
+
+        Args:
+            a: name of a setting as in `settings`, its key, or a part of it that no other has.
+            b: of another one.
+            distance: `total`, after 50 steps of its own, or `finished`, at time-out.
+            unit: `m`, `h` (half grid sides) or `greedy` (shares of greedy's distance).
+            rng: generator of the bootstrap's random numbers; by default that of the experiment's
+                seed.
+
+        Raises:
+            UnknownName, InvalidInput: if there is no such setting, distance or unit, or a setting
+                has no seed with a distance.
+        """
+        return compare_settings(self.summary, a, b, distance=distance, unit=unit, rng=rng)
 
     def save_report(self, folder: str | os.PathLike[str]) -> Path:
         """Write the report: its page, all trials as CSV, and the summary.

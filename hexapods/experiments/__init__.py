@@ -11,6 +11,8 @@
 - `statistics`, `measures`, `setting_results`, `summary`: interquartile means, bootstrap intervals
   and comparisons, from single results up to the summary document; `worlds`: the part of a league
   or recovery; `trial_rows`: trials as rows of a table.
+- `comparing`: compares two groups of seeds, `setting_comparison` two settings of a summary;
+  `comparison`: the result, and the same in sentences.
 - `published`: the paper's Table 1; `claims`: the paper's claims and their verdicts;
   `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`, `labels` and
   `failures`: numbers, names and failed trials as text.

@@ -123,6 +123,16 @@ class Trial:
         return replace(self.setting.trial, training=training)
 
 
+def is_deterministic(setting: TrialSetting) -> bool:
+    """Whether a setting's trials come out equal with every seed.
+
+    Those of an agent that looks ahead do, unless robots or sensors differ by seed.
+    """
+    training = setting.training
+    varies = training.tolerance > 0 or training.world.one_of(SensorNoise) is not None
+    return setting.role == "reference" and not varies
+
+
 class Plan:
     """The settings of an experiment, and their trials."""
 
@@ -148,9 +158,7 @@ class Plan:
 
     def count(self, setting: TrialSetting) -> int:
         """Return the number of trials of a setting."""
-        training = setting.training
-        varies = training.tolerance > 0 or training.world.one_of(SensorNoise) is not None
-        return self.config.seeds if setting.role == "learner" or varies else 1
+        return 1 if setting.role == "timed" or is_deterministic(setting) else self.config.seeds
 
     def trials(self) -> Iterator[Trial]:
         """Iterate over all trials: references, then learners by seed, then timed trials."""

@@ -74,6 +74,15 @@ class SettingResults(NamedTuple):
         return tuple(result.distances_m[-1] for result in self.succeeded if result.distances_m)
 
     @property
+    def seed_numbers(self) -> tuple[int, ...]:
+        """Numbers of the seeds that have a distance, in the order of `total_m`."""
+        return tuple(
+            number
+            for number in sorted(self.results)
+            if not self.results[number].failure and self.results[number].distances_m
+        )
+
+    @property
     def finished_m(self) -> Points:
         """Each seed's distance at time-out, when the first lane has used its 50 steps [m]."""
         distances = (result.finished_distance_m for result in self.succeeded)

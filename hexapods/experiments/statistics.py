@@ -6,7 +6,7 @@ SciPy takes more room than all else that the product needs.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple
 
@@ -28,7 +28,7 @@ _MAX_BATCH_NUMBERS = 4_000_000
 _CACHE_SIZE = 20_000
 _TRIMMED = 0.25
 """Share of the samples that an interquartile mean drops at each end."""
-_NORMAL_QUANTILE = 1.959963984540054
+NORMAL_QUANTILE = 1.959963984540054
 """The 97.5 % quantile of the standard normal distribution, for `CONFIDENCE` of 95 %."""
 
 
@@ -123,23 +123,31 @@ def interval(
     value = float(statistic(*arrays))
     if min(len(points) for points in strata) < MIN_SEEDS:
         return Interval(value)
-    resampled = np.sort(np.concatenate([*_resampled(arrays, statistic, seed)], axis=-1))
+    ascending = np.sort(resampled(arrays, statistic, seed))
     tail = (1 - confidence) / 2
-    return Interval(value, _quantile(resampled, tail), _quantile(resampled, 1 - tail))
+    return Interval(value, _quantile(ascending, tail), _quantile(ascending, 1 - tail))
 
 
-def _resampled(
-    strata: Sequence[FloatArray], statistic: Callable[..., FloatArray], seed: int
-) -> Iterator[FloatArray]:
-    """Yield a statistic of `RESAMPLES` resamples, in batches (k,) that fit into memory."""
+def resampled(
+    strata: Sequence[FloatArray],
+    statistic: Callable[..., FloatArray],
+    seed: int | np.random.Generator,
+) -> FloatArray:
+    """Return a statistic of `RESAMPLES` stratified resamples, (…, RESAMPLES).
+
+    Args:
+        strata: resampled separately.
+        statistic: as in `interval`.
+        seed: seed of the resampling, or the generator of its random numbers.
+    """
     rng = np.random.default_rng(seed)
     batch = max(1, _MAX_BATCH_NUMBERS // sum(len(points) for points in strata))
+    batches = []  # each fits into memory
     for first in range(0, RESAMPLES, batch):
         count = min(batch, RESAMPLES - first)
-        yield statistic(
-            *(points[rng.integers(0, len(points), (count, len(points)))] for points in strata),
-            axis=-1,
-        )
+        samples = (points[rng.integers(0, len(points), (count, len(points)))] for points in strata)
+        batches.append(statistic(*samples, axis=-1))
+    return np.concatenate(batches, axis=-1)
 
 
 def _quantile(ascending: FloatArray, probability: float) -> float:
@@ -248,7 +256,7 @@ def improvement(
 
     def mean_probability(*samples: FloatArray, axis: int = -1) -> FloatArray:
         pairs = zip(samples[: len(a)], samples[len(a) :], strict=True)
-        probabilities = [_probability(pair_a, pair_b, axis) for pair_a, pair_b in pairs]
+        probabilities = [probability_ahead(pair_a, pair_b, axis) for pair_a, pair_b in pairs]
         return np.asarray(np.mean(probabilities, axis=0), dtype=np.float64)
 
     return interval((*a, *b), mean_probability, seed, confidence)
@@ -273,7 +281,7 @@ def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verd
     return estimate.exceeds(threshold) if fewest >= MIN_RESAMPLED else "not established"
 
 
-def _probability(a: FloatArray, b: FloatArray, axis: int) -> FloatArray:
+def probability_ahead(a: FloatArray, b: FloatArray, axis: int = -1) -> FloatArray:
     """Return P(a > b) + P(a = b)/2 along an axis, by the Mann-Whitney U statistic."""
     n, m = a.shape[axis], b.shape[axis]
     ranks = _ranks(np.moveaxis(np.concatenate([a, b], axis=axis), axis, -1))
@@ -299,7 +307,7 @@ def _ranks(samples: FloatArray) -> FloatArray:
 
 def _wilson(hits: int, of: int) -> tuple[float, float]:
     """Return the limits of the Wilson interval of a share (Newcombe 1998, method 3)."""
-    share_of_hits, z = hits / of, _NORMAL_QUANTILE
+    share_of_hits, z = hits / of, NORMAL_QUANTILE
     denominator = 2 * (of + z**2)
     center = (2 * of * share_of_hits + z**2) / denominator
     delta = z / denominator * math.sqrt(4 * of * share_of_hits * (1 - share_of_hits) + z**2)

@@ -21,7 +21,7 @@ from hexapods.experiments.measures import (
 from hexapods.experiments.names import trial_names
 from hexapods.experiments.narrative.finding import find
 from hexapods.experiments.narrative.narrative import narrate
-from hexapods.experiments.plan import Plan
+from hexapods.experiments.plan import Plan, is_deterministic
 from hexapods.experiments.published import published
 from hexapods.experiments.setting_results import (
     SettingResults,
@@ -112,6 +112,8 @@ def _setting(results: SettingResults, config: ExperimentConfig, set_aside: int) 
         "role": results.setting.role,
         **setting_fields(results),
         "n": len(results.total_m),
+        "seed_numbers": list(results.seed_numbers),
+        "is_deterministic": is_deterministic(results.setting),
         "failed": len(results.results) - len(results.succeeded) + set_aside,
         "total": summarise_distances(results.total_m, config.seed),
         "finished": summarise_distances(results.finished_m, config.seed),

@@ -4236,6 +4236,9 @@ export interface RunPage {
 }
 /**
  * Results of a setting over its seeds.
+ *
+ * `seed_numbers` are those of the seeds that have a distance, in the order of the points.
+ * `is_deterministic`: whether every seed would come equally far.
  */
 export interface SettingView {
   steps_per_episode: number | null;
@@ -4259,6 +4262,8 @@ export interface SettingView {
   role: "learner" | "reference";
   gait: string;
   n: number;
+  seed_numbers?: number[] | null;
+  is_deterministic?: boolean | null;
   failed: number;
   total: Distances | null;
   finished: Distances | null;
@@ -4278,6 +4283,7 @@ export interface SettingView {
     | Beats
     | "learner"
     | "reference"
+    | number[]
     | Distances
     | PublishedView
     | undefined;

@@ -226,12 +226,18 @@ class Measured(BaseModel):
 
 
 class SettingView(Measured, Named):
-    """Results of a setting over its seeds."""
+    """Results of a setting over its seeds.
+
+    `seed_numbers` are those of the seeds that have a distance, in the order of the points.
+    `is_deterministic`: whether every seed would come equally far.
+    """
 
     key: str
     role: Literal["learner", "reference"]
     gait: str
     n: Count
+    seed_numbers: list[Count] | None = None
+    is_deterministic: bool | None = None
     failed: Count
     total: Distances | None
     finished: Distances | None

@@ -20,6 +20,7 @@ from hexapods.domain.settings import SettingValues
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.world import check_ends
 from hexapods.experiments.plan import trial_seed
+from hexapods.experiments.statistics import iqm
 from hexapods.experiments.trial import TrialConfig, TrialResult
 from hexapods.runs.config import TrainingConfig, training_config
 
@@ -232,11 +233,5 @@ def _summarize(
         steps_per_episode=config.steps_per_episode,
         distances_m=list(distances_m),
         walkers=walkers / len(distances_m),
-        iqm_m=_interquartile_mean(distances_m),
+        iqm_m=float(iqm(np.array(distances_m))),
     )
-
-
-def _interquartile_mean(values: Sequence[float]) -> float:
-    """Return the interquartile mean, summed in ascending order."""
-    cut, ordered = int(0.25 * len(values)), np.sort(values)
-    return float(ordered[cut : len(values) - cut].mean())

@@ -8,10 +8,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import psutil
 import pytest
-from scipy import stats
 
 from app.features.what_if.what_if import (
     MAX_WAITING,
@@ -19,7 +17,6 @@ from app.features.what_if.what_if import (
     SPECTATORS_LIMIT_S,
     WhatIf,
     WhatIfRequester,
-    _interquartile_mean,
 )
 from app.jobs.process_pool import NICENESS, ProcessPool
 from app.storage.errors import Busy
@@ -114,13 +111,6 @@ def test_cached_trials_are_not_run_again(what_if: WhatIf, pool: ProcessPool) -> 
     assert pool.pids == pids
     lower = min(psutil.Process().nice() + NICENESS, 19)
     assert all(psutil.Process(pid).nice() == lower for pid in pids)
-
-
-def test_interquartile_mean_equals_scipys() -> None:
-    values = np.random.default_rng(1).normal(size=31)
-    for count in (1, 2, 3, 5, 30, 31):
-        mean = _interquartile_mean(tuple(values[:count]))
-        assert mean == pytest.approx(stats.trim_mean(values[:count], 0.25))
 
 
 @pytest.mark.parametrize(
