@@ -1,4 +1,4 @@
-"""Changes of a training while it practises: of its agent's live settings, and disturbances."""
+"""Changes of a training while it practises: live settings, disturbances, and presses."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -9,6 +9,7 @@ from hexapods.domain.checks import check_whole
 from hexapods.domain.disturbance_documents import as_mapping
 from hexapods.domain.errors import InvalidInput
 from hexapods.runs.config import TrainingConfig, changeable_settings
+from hexapods.runs.presses import read_presses
 
 LATER = "later_changes"
 """Field of a checkpoint's metadata: changes that are still to be made."""
@@ -30,7 +31,7 @@ def read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict
         if not isinstance(change, Mapping) or "step" not in change:
             raise InvalidInput(f"a change is a mapping such as {_CHANGE}, not {change!r}")
         values = plain(change)
-        check_names("a change", values, ("step", "settings", "disturbance"))
+        check_names("a change", values, ("step", "settings", "disturbance", "presses"))
         settings = values.setdefault("settings", {})
         if not isinstance(settings, Mapping):
             raise InvalidInput(f"settings of a change are a mapping, as in {_CHANGE}")
@@ -45,6 +46,8 @@ def read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict
             # Also in `Learner.disturb`, but then what was practised before would be lost.
             world = world.then(replace(values["disturbance"], at_step=values["step"]))
             world.check(config.robot, config.simulator)
+        if "presses" in values:
+            values["presses"] = read_presses(values["presses"], config.agent)
         values["settings"] = {k: live[k].normalized(v) for k, v in plain(settings).items()}
         read.append(values)
     return read

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from hexapods.agents.protocol import Tunable
-from hexapods.agents.registry import AgentClass, needs_practice
+from hexapods.agents.registry import AgentClass, check_unattended, needs_practice
 from hexapods.arguments import (
     NOT_GIVEN,
     WALK,
@@ -39,6 +39,7 @@ from hexapods.runs.config import (
     agent_settings,
     training_config,
 )
+from hexapods.runs.presses import apply_presses
 from hexapods.runs.records import Evaluated, TrainingRecord
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import Checkpoint, check_fits, load_agent, restore, snapshot, to_bytes
@@ -86,7 +87,9 @@ def train(
             robot, simulator, grid and observation are those of its practice unless they are given,
             and the settings the agent's defaults.
         changes: changes during the practice: mappings with the number of steps after which they
-            happen, `step`, and values of the agent's live `settings` by name, or a `disturbance`.
+            happen, `step`, and values of the agent's live `settings` by name, a `disturbance`, or
+            `presses` of those who watch: pairs of the steps done in the picture and a value from
+            −1 to 1, for an agent that learns from them, such as `tamer`.
         on_record: called with each record of the loop.
         checkpoint: path of a file that keeps the state between two steps if the training is
             interrupted by Ctrl-C, or `on_record` raises: `resume` goes on from there, exactly. A
@@ -172,7 +175,10 @@ def _begun(
         name, trained = learned_by(agent_name(agent), table)
     config = check_savable(_config(name, trained, fields_and_settings))
     check_ends(config.world.disturbances, config.steps)
-    return Practice(config, None if trained is None else trained.table, changes, record)
+    practice = Practice(config, None if trained is None else trained.table, changes, record)
+    if not practice.has_presses:
+        check_unattended(name, config.settings)
+    return practice
 
 
 def _restore(learner: Learner, interrupted: Training) -> None:
@@ -349,6 +355,11 @@ class Practice(Iterator[TrainingRecord]):
         return self._learner.step
 
     @property
+    def has_presses(self) -> bool:
+        """Whether people press in it, by its changes."""
+        return any("presses" in change for change in (*self._made, *self._changes))
+
+    @property
     def is_complete(self) -> bool:
         """Whether all steps are done, and the last evaluation."""
         return self.step == self.config.steps and self._learner.due_epsilon is None
@@ -397,6 +408,7 @@ class Practice(Iterator[TrainingRecord]):
             if values["settings"]:
                 # `_read_changes` has looked for settings that are live.
                 cast(Tunable, self._learner.walker.agent).tune(**values["settings"])
+            apply_presses(self._learner.walker.agent, values.get("presses", ()))
 
     def __repr__(self) -> str:
         config, step = self.config, self._learner.step

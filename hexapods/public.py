@@ -24,8 +24,10 @@ from hexapods.agents.protocol import AgentState as AgentState
 from hexapods.agents.protocol import Expand as Expand
 from hexapods.agents.protocol import Node as Node
 from hexapods.agents.protocol import Observe as Observe
+from hexapods.agents.protocol import Press as Press
 from hexapods.agents.protocol import Problem as Problem
 from hexapods.agents.protocol import Tabular as Tabular
+from hexapods.agents.protocol import Teachable as Teachable
 from hexapods.agents.protocol import Transition as Transition
 from hexapods.agents.protocol import Tunable as Tunable
 from hexapods.agents.protocol import Valuing as Valuing
@@ -35,6 +37,7 @@ from hexapods.agents.r_max import RMax as RMax
 from hexapods.agents.sarsa import Sarsa as Sarsa
 from hexapods.agents.sarsa_lambda import SarsaLambda as SarsaLambda
 from hexapods.agents.tabular import TabularLearner as TabularLearner
+from hexapods.agents.tamer import Tamer as Tamer
 from hexapods.arguments import load_robot as load_robot
 from hexapods.arguments import recommended_agent as recommended_agent
 from hexapods.benchmarks import Benchmark as Benchmark

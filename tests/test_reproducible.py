@@ -47,6 +47,7 @@ DIGESTS = {
     "afterstate-r-max": "6377e539c469",
     "multilevel-model": "15500c0bc749",
     "linear-model": "4f1b0571cbcc",
+    "tamer": "756a9b2ad027",
     "greedy": "41057ef4948b",
     "two-step": "41057ef4948b",
     "look-ahead": "41057ef4948b",

@@ -27,8 +27,9 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, world_from
 from hexapods.runs.clocks import Clock
-from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
+from hexapods.runs.config import MAX_STEPS, TrainingConfig, WalkingProblem, training_config
 from hexapods.runs.lane import LANE_FIELDS
+from hexapods.runs.presses import MAX_PRESSES
 from hexapods.runs.race_config import Branch
 from hexapods.shows.show import MAX_SPEED, MIN_SPEED
 
@@ -201,20 +202,32 @@ class PatchBody(Body):
         return self.model_dump(exclude_none=True)
 
 
+PressBody = tuple[
+    Annotated[float, number(ge=0, le=MAX_STEPS)], Annotated[float, number(ge=-1, le=1)]
+]
+"""Steps done in the picture when it was pressed, and its value."""
+
+
 class ChangeBody(PatchBody):
-    """Changes to a running training: its pace, and live settings of its agent."""
+    """Changes to a running training: its pace, live settings of its agent, and presses.
+
+    `presses` are those of + and - by who watches, for an agent that learns from them: pairs of the
+    steps done in the picture then, and a value from -1 to 1.
+    """
 
     model_config = ConfigDict(
         json_schema_extra={
             "anyOf": [
                 *one_given(["pace"])["anyOf"],
                 {"required": ["settings"], "properties": {"settings": {"minProperties": 1}}},
+                *one_given(["presses"])["anyOf"],
             ]
         }
     )
 
     pace: Annotated[Any, Declared(declared_fields(TrainingConfig)["pace"])] | None = None
     settings: SettingsBody = Field(default_factory=SettingsBody)
+    presses: Annotated[list[PressBody], Field(min_length=1, max_length=MAX_PRESSES)] | None = None
 
     def changes(self) -> dict[str, Any]:
         """Return the given fields."""

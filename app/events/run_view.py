@@ -42,6 +42,10 @@ Time = Annotated[
 Settings = Annotated[dict[str, Value], Field(description="settings of the agent, by name")]
 NewPace = Annotated[float | Literal["max"] | None, Field(exclude_if=lambda pace: pace is None)]
 NewSettings = Annotated[Settings, Field(exclude_if=lambda settings: not settings)]
+_NewPresses = Annotated[
+    list[Annotated[list[float], Field(min_length=2, max_length=2)]],
+    Field(exclude_if=lambda presses: not presses),
+]
 _KindName = Annotated[str, JsonForm(str, str, lambda: {"enum": [*run_kinds()], "type": "string"})]
 _NewDisturbance = Annotated[
     Annotated[Mapping[str, Any], JsonForm(dict, dict, DISTURBANCE_SCHEMA)] | None,
@@ -116,12 +120,17 @@ class Change(Answer):
     """A change of a running training, and the step after which it applies.
 
     Fields that did not change are left out.
+
+    Attributes:
+        presses: of those who watch: pairs of the steps done in the picture, and a value from -1 to
+            1.
     """
 
     step: Count
     pace: NewPace = None
     settings: NewSettings = field(default_factory=dict)
     disturbance: _NewDisturbance = None
+    presses: _NewPresses = field(default_factory=list)
 
 
 class TrainingView(RunView):

@@ -160,7 +160,7 @@ class Job:
         """Change settings or pace, or disturb the training, after the current step.
 
         Args:
-            changes: values of settings by name, or `disturbance` in plain types.
+            changes: values of settings by name, `disturbance` in plain types, or `presses`.
             within_s: time after which the process discards the command [s].
 
         Returns:
@@ -386,8 +386,9 @@ class Job:
         changes = tuple(sorted((*self.last.changes, change), key=itemgetter("step")))
         self._store.update(self.run_id, changes=changes)
         self._progress.clear()
-        if "disturbance" not in change:
-            self._publish_event("rates", RatesEvent(run_id=self.run_id, **change))
+        if change.keys() & {"pace", "settings"}:
+            rates = {k: v for k, v in change.items() if k in ("step", "pace", "settings")}
+            self._publish_event("rates", RatesEvent(run_id=self.run_id, **rates))
         self.publish(changes=changes)
         self._acknowledge(changed)
 

@@ -9,6 +9,7 @@ from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
 from hexapods.agents.protocol import Agent, AgentState, Transition, Tunable
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import Action, Cells
+from hexapods.runs.presses import apply_presses
 from hexapods.runs.recording import NEWEST_STEPS
 from hexapods.runs.records import RaceRecord, StepTaken, TrainingRecord
 from hexapods.runs.transition_log import Transitions
@@ -29,8 +30,8 @@ class JobControl:
     Attributes:
         stopped: whether a `stop` command arrived: end with the results so far.
         exiting: whether `checkpoint_and_exit` arrived: end with a checkpoint, to be resumed later.
-        changes: changes of rates and pace and disturbances during the run, each with the number of
-            steps done.
+        changes: changes of rates and pace, disturbances and presses during the run, each with the
+            number of steps done.
         disturb: lets something happen to a training, given in plain types; returns it with the step
             in which it begins.
         take_transitions: returns the steps of practice since its last call, for the log.
@@ -64,6 +65,8 @@ class JobControl:
         self._saved: tuple[int, int] | None = None
         """Step and number of changes at the newest checkpoint."""
         self._to_replay: list[Mapping[str, Any]] = []
+        self._deferred: list[Command] = []
+        """Commands that came during an evaluation, to be executed after the next step."""
 
     def keep_pace(self, pace: float | Literal["max"], step_s: float) -> None:
         """Limit the speed to `pace` times real time; the first step begins now.
@@ -144,6 +147,9 @@ class JobControl:
             False if the job is to stop or to exit.
         """
         self._replay_due(step, agent)
+        deferred, self._deferred = self._deferred, []
+        for command in deferred:
+            self._execute(command, step, agent)
         while True:
             wait_s = self._wait_s()
             if wait_s is None or wait_s > 1 / BATCHES_PER_S:
@@ -175,6 +181,10 @@ class JobControl:
                 command = self._next_command(wait_s)
             except queue.Empty:
                 return
+            if "presses" in command.changes:
+                # They change the table that is evaluated; repeated, they come before or after it.
+                self._deferred.append(command)
+                continue
             self._execute(command, step, agent)
             if self._paused:
                 self.flush()
@@ -241,6 +251,7 @@ class JobControl:
             changes = {**changes, "disturbance": self.disturb(changes["disturbance"])}
         if "settings" in changes and isinstance(agent, Tunable):
             agent.tune(**changes["settings"])
+        apply_presses(agent, changes.get("presses", ()))
         if "pace" in changes:
             self._pace = changes["pace"]
             # A step that is overdue by the new pace begins now; those after it wait their time.

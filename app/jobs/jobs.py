@@ -40,6 +40,7 @@ from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.world import check_ends
 from hexapods.runs.config import TrainingConfig, changeable_settings
+from hexapods.runs.presses import read_presses
 
 MAX_PAUSED = 16
 MAX_PENDING_CHANGES = 8
@@ -250,6 +251,8 @@ class Jobs:
                 if name not in valid or name == "pace":
                     raise UnknownName(f"live setting of {agent}", name, valid.keys() - {"pace"})
                 checked.setdefault("settings", {})[name] = valid[name].normalized(value)
+            if "presses" in changes:
+                checked["presses"] = read_presses(changes["presses"], agent)
             return checked
 
         self._change_live(run_id, checked)

@@ -17,6 +17,7 @@ from hexapods.domain.settings import complete
 from hexapods.domain.world import world
 from hexapods.runs import seeding, tables
 from hexapods.runs.config import TrainingConfig, agent_settings, changeable_settings
+from hexapods.runs.presses import read_presses
 from hexapods.runs.tables import Checkpoint
 
 
@@ -95,7 +96,8 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
     """Check that a recorded change of settings or pace, or a disturbance, is valid.
 
     Args:
-        change: the `step` of the change, and a new `pace`, new `settings` or a `disturbance`.
+        change: the `step` of the change, and a new `pace`, new `settings`, a `disturbance`,
+            or `presses`.
         agent: name of a registered agent.
 
     Raises:
@@ -104,7 +106,9 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
     valid = dict(changeable_settings(agent))
     pace = valid.pop("pace")
     settings = msgspec.convert(change.get("settings", {}), dict[str, Any])
-    unknown = {*change} - {"step", "pace", "disturbance", "settings"} | {*settings} - {*valid}
+    unknown = {*change} - {"step", "pace", "disturbance", "settings", "presses"} | {*settings} - {
+        *valid
+    }
     if unknown:
         raise ValueError(f"{', '.join(unknown)} cannot change while a training runs")
     msgspec.convert(change["step"], Step)
@@ -112,6 +116,8 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         disturbance_from(change["disturbance"])
     if "pace" in change:
         pace.check(change["pace"])
+    if "presses" in change:
+        read_presses(change["presses"], agent)
     for name, value in settings.items():
         valid[name].check(value)
 

@@ -13,6 +13,7 @@
   update their Q-table from it as well: `dyna_q`, `dyna_q_plus` and `prioritized_sweeping`;
   `model_planning` that of learners that explore by value iteration in it: `r_max` and
   `posterior_sampling`.
+- `tamer` learns from presses of + and − by those who watch.
 - `value_table` is the base class of tables: `q_table` has a value for each state and action, and
   `landing_table` one for each landing, in which `afterstate_q` and `afterstate_r_max` learn.
   `table_rows` iterates over the rows of a table's sparse stored form.

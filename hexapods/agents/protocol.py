@@ -24,11 +24,12 @@ Attributes of the class declare:
 - `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
   changed exploration rate acts a step later.
 
-Optional methods: those of `Tunable`, `Valuing` and `Tabular`, of `Explaining` and
-`ExplainingSearch` in `hexapods.agents.explanation`, and two static methods:
+Optional methods: those of `Tunable`, `Teachable`, `Valuing` and `Tabular`, of `Explaining` and
+`ExplainingSearch` in `hexapods.agents.explanation`, and three static methods:
 `check_state(state)` raises `ValueError`, which `InvalidInput` is, for a state that `load` cannot
 restore, such as one in an untrusted file; `check_problem(problem, **settings)` raises
-`InvalidInput` for settings that are too much for a problem, before a run is queued.
+`InvalidInput` for settings that are too much for a problem, before a run is queued;
+`check_unattended(**settings)` for those with which it learns nothing unless people teach it.
 """
 
 from collections.abc import Callable, Sequence
@@ -92,6 +93,15 @@ class Transition(NamedTuple):
     """Next action that the agent has chosen; only if it `is_on_policy`."""
 
 
+class Press(NamedTuple):
+    """A press of + or − by who watches the walk."""
+
+    at_step: float
+    """Number of steps that were done in the picture then, with the share of the present one."""
+    value: float
+    """From −1 to 1: of several who press for the same moment, their mean."""
+
+
 @runtime_checkable
 class Agent(Protocol):
     """Interface of an agent: chooses actions, and may learn from transitions."""
@@ -120,6 +130,14 @@ class Tunable(Protocol):
     @property
     def tune(self) -> Callable[..., None]:
         """Change settings, given by name, from the next step on."""
+
+
+@runtime_checkable
+class Teachable(Protocol):
+    """Agent that learns from presses of + and − by who watches it, between two steps."""
+
+    def feel(self, presses: Sequence[Press]) -> None:
+        """Learn from presses, in this order."""
 
 
 @runtime_checkable

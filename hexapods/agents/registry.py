@@ -34,6 +34,7 @@ from hexapods.agents.r_max import RMax
 from hexapods.agents.sarsa import Sarsa
 from hexapods.agents.sarsa_lambda import SarsaLambda
 from hexapods.agents.tabular import TabularLearner
+from hexapods.agents.tamer import Tamer
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.settings import (
     DeclaredSetting,
@@ -64,6 +65,7 @@ BUILT_IN: Mapping[str, AgentClass] = {
     "afterstate-r-max": AfterstateRMax,
     "multilevel-model": MultilevelModel,
     "linear-model": LinearModel,
+    "tamer": Tamer,
     "greedy": Greedy,
     "two-step": TwoStep,
     "look-ahead": LookAhead,
@@ -199,6 +201,17 @@ def check_problem(name: str, problem: Problem, settings: Mapping[str, Any]) -> N
     check = getattr(find(name), "check_problem", None)
     if check is not None:
         check(problem, **settings)
+
+
+def check_unattended(name: str, settings: Mapping[str, Any]) -> None:
+    """Check by the agent's `check_unattended`, if it has one, that it learns by itself.
+
+    Raises:
+        UnknownName, InvalidInput: as `find`, or if it needs people who teach it.
+    """
+    check = getattr(find(name), "check_unattended", None)
+    if check is not None:
+        check(**settings)
 
 
 def settings_of(agent: AgentClass) -> Mapping[str, DeclaredSetting]:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from hexapods.agents.registry import check_unattended
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import Diverged
 from hexapods.domain.settings import SettingValues
@@ -53,6 +54,9 @@ class TrialConfig:
     plans_with: PlansWith | None = None
     keep_learning: bool = False
     most_transitions: int | None = None
+
+    def __post_init__(self) -> None:
+        check_unattended(self.training.agent, self.training.settings)
 
     @property
     def must_be_alone(self) -> bool:

@@ -13,6 +13,7 @@
   kinds alike.
 - `gait_analysis` computes footfalls, speed, cycle, posture and energy of a recorded walk,
   `footfall` when its feet are on the ground; `move_comparison` compares each step with the best.
+- `presses` are those of people who watch a training, from which its agent learns.
 - `transition_log` keeps what a learner observed, did and earned; `rebuilding` builds a learner
   again from it, at any step, and explains its steps.
 - `tables` takes, restores, encodes and validates checkpoints; `table_file` reads a table from its

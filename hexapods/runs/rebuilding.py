@@ -20,6 +20,7 @@ from hexapods.domain.observation import Observation, legal_actions
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs import seeding
 from hexapods.runs.config import WalkingProblem
+from hexapods.runs.presses import apply_presses
 from hexapods.runs.recording import Arrays
 from hexapods.runs.transition_log import Logged
 
@@ -164,6 +165,7 @@ class RebuiltLearner:
         """Change settings as in the training, from the next step on."""
         if "settings" in change and isinstance(self.agent, Tunable):
             self.agent.tune(**change["settings"])
+        apply_presses(self.agent, change.get("presses", ()))
         self.tuned += 1
 
     def take(self, logged: Logged, *, explain_next: bool = False) -> None:

@@ -514,6 +514,10 @@ export interface Change {
     at_step: number;
     [k: string]: number | string | null | number[];
   } | null;
+  /**
+   * of those who watch: pairs of the steps done in the picture, and a value from -1 to 1.
+   */
+  presses?: [number, number, ...number[]][];
 }
 /**
  * Why an action was chosen, why no other, and when another would have been.

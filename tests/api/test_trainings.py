@@ -186,6 +186,19 @@ def test_live_changes_are_applied_and_recorded(api: Api) -> None:
         refused(api.call("PATCH", path, json={"settings": settings}), 422)
 
 
+def test_presses_are_recorded_where_the_agent_learns_from_them(api: Api) -> None:
+    run = api.slow_training(agent="tamer", settings={"trainer": "people"})
+    path = f"/trainings/{run['id']}"
+    now = api.call("PATCH", path, json={"presses": [[0, 1], [0.5, -0.25]]}).json()
+    assert now["changes"][-1]["presses"] == [[0, 1], [0.5, -0.25]]
+    for presses in ([], [[1]], [[-1, 1]], [[1, 2]], [[1, True]], [[1, 1]] * 101, "+"):
+        refused(api.call("PATCH", path, json={"presses": presses}), 422)
+    api.stop(run)
+    other = api.slow_training()
+    answer = api.call("PATCH", f"/trainings/{other['id']}", json={"presses": [[0, 1]]})
+    refused(answer, 422, "does not learn from presses; those that do: tamer")
+
+
 def test_training_with_live_changes_is_reproducible(api: Api) -> None:
     run = api.slow_training()
     change = {"settings": {"alpha": 0.05}, "pace": 50}

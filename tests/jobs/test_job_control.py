@@ -11,6 +11,7 @@ from app.jobs.job_control import CHECKPOINT_EVERY_S, JobControl, Stopped
 from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
 from hexapods.agents.protocol import Problem
 from hexapods.agents.q_learning import QLearning
+from hexapods.agents.tamer import Tamer
 from hexapods.domain.grid import FootGrid
 from hexapods.runs.records import EpisodeEnded
 from hexapods.runs.seeding import generator
@@ -111,6 +112,18 @@ def test_tune_changes_rates_and_records_the_change(pipe: FakePipe) -> None:
     assert pipe.control.wait_for_turn(12, agent)
     assert agent.epsilon == 0.25
     assert pipe.control.changes == [{"step": 12, "settings": {"alpha": 0.7, "epsilon": 0.25}}]
+
+
+def test_presses_wait_for_the_end_of_an_evaluation_whose_table_they_change(
+    pipe: FakePipe,
+) -> None:
+    agent = Tamer(generator(0), Problem(((1, 4), (2, 5), (3, 6)), FootGrid().cells))
+    pipe.commands.put(Command("tune", 1, {"presses": [[2.5, 1.0]]}))
+    pipe.control.execute_pending(3, agent)
+    assert pipe.control.changes == []
+
+    assert pipe.control.wait_for_turn(4, agent)
+    assert pipe.control.changes == [{"step": 4, "presses": [[2.5, 1.0]]}]
 
 
 def checkpoint_regularly(pipe: FakePipe) -> list[int]:

@@ -36,6 +36,7 @@ from hexapods.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, ch
 from hexapods.experiments.config import MAX_WORKERS
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import check_lane
+from hexapods.runs.presses import MAX_PRESSES
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.runs.results import RaceResult
 from hexapods.version import __version__
@@ -50,8 +51,16 @@ _MAX_CHANGES = 10_000
 same time may pass by some."""
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
-_Change = float | int | str | bool | dict[Name, float | int | str | bool | list[int]]
-"""The step, a new pace, new values of settings, or a disturbance."""
+_Press = Annotated[list[float], Meta(min_length=2, max_length=2)]
+_Change = (
+    float
+    | int
+    | str
+    | bool
+    | dict[Name, float | int | str | bool | list[int]]
+    | Annotated[list[_Press], Meta(max_length=MAX_PRESSES)]
+)
+"""The step, a new pace, new values of settings, a disturbance, or presses."""
 
 
 class _EndedRun(UntrustedInput, frozen=True):

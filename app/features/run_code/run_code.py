@@ -171,7 +171,12 @@ class _Practices:
         arguments = self._differing(run.config, [] if before is None else [before])
         arguments |= _differing_settings(run.config.agent, run.config.settings)
         tuned = {name for change in run.changes for name in change.get("settings", ())}
-        if tuned:
+        if any("presses" in change for change in run.changes):
+            self.commands.append(
+                "# People taught it by presses of + and −, which no command repeats; the Python "
+                f"program does.\n{self._download(run.id)}"
+            )
+        elif tuned:
             names = ", ".join(sorted(tuned))
             self.commands.append(
                 f"# While it ran, {names} changed, which no command repeats; the Python program "

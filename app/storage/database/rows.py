@@ -27,7 +27,7 @@ from hexapods.runs.race_config import RaceConfig
 _MAX_TEXT = 10_000
 _MAX_CACHED_CONFIG_CHARS = 10_000
 """Longer configs are parsed anew each time instead of being cached."""
-_CHANGES = ("step", "pace", "settings", "disturbance")
+_CHANGES = ("step", "pace", "settings", "disturbance", "presses")
 _LISTS = ("lane_training_ids", "waiting_for", "changes")
 _TIMES = ("created_at", "started_at", "ended_at")
 

@@ -26,6 +26,7 @@ from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import World
+from hexapods.runs.config import training_config
 from hexapods.runs.lane import PlanningModel, lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.race_file import race_arrays
@@ -335,6 +336,20 @@ def test_training_that_was_disturbed_while_it_ran_is_exported_and_imported(
         assert names in refusal(rewritten(data, change))
     late_end = _set("until_step", 121, "run", "changes", 0, "disturbance")
     assert imported(rewritten(data, late_end)).changes[0]["disturbance"]["until_step"] == 121
+
+
+def test_training_that_people_taught_is_exported_and_imported(
+    source: RunStore, store: RunStore
+) -> None:
+    config = training_config("tamer", trainer="people", simulator="kinematic", gait="tripod")
+    changes = ({"step": 50, "presses": [[48.25, 1.0], [49.5, -0.125]]},)
+    store.create(training(ONE, config=config, state="interrupted", done=60, changes=changes))
+    data = export_run(store, ONE)
+
+    assert imported(data).changes == changes
+    for presses in ([[48.25, 2.0]], [[48.25]], [["+", 1.0]], []):
+        change = _set("presses", presses, "run", "changes", 0)
+        assert refusal(rewritten(data, change))
 
 
 def _set(name: str, value: Any, *path: str | int) -> Change:

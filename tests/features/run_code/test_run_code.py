@@ -207,3 +207,24 @@ def test_a_long_row_of_trainings_begins_with_a_table() -> None:
     assert [line[0] for line in lines] == ["curl", *["hexapods"] * MAX_CONTINUED]
     assert f"/{ids[-1 - MAX_CONTINUED]}/" in lines[0][-1]
     assert f"q-{ids[-1]}.npz" in lines[-1]
+
+
+def test_what_people_pressed_is_pressed_in_the_program_too(
+    api: Api, code: Any, tmp_path: Path
+) -> None:
+    settings = {"trainer": "people"}
+    run = api.train(
+        agent="tamer", steps=60, pace=8, evaluate_every=10, settings=settings, gait="tripod"
+    )
+    api.until(run, lambda now: now["progress"]["done"] > 6)
+    for presses in ([[5.2, 1], [5.8, -0.5]], [[7.31, -1]]):
+        changed = api.call("PATCH", f"/trainings/{run['id']}", json={"presses": presses})
+        assert changed.status_code == 200
+        assert changed.json()["changes"][-1]["presses"] == presses
+    api.call("PATCH", f"/trainings/{run['id']}", json={"pace": "max"})
+    finished = api.finished(run)
+    shown = code(finished)
+    [result] = results_of_program(shown["python"], tmp_path)
+
+    assert result == finished["result"]
+    assert "People taught it by presses" in shown["command"]
