@@ -7,7 +7,9 @@ import {
 } from "../features.js";
 import { share } from "../actions.js";
 import { page } from "../page-state.js";
-import { clickedCell, helpIsOpen, isPhone, isProjected, isStill, nextTheme, theme, toastMessage } from "../page.js";
+import {
+  clickedCell, helpIsOpen, isCardFolded, isPhone, isProjected, isStill, nextTheme, theme, toastMessage,
+} from "../page.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
@@ -71,8 +73,10 @@ function Workspace({ isHidden }) {
     // A click on a foot grid is answered in the table of those who study.
     if (clickedCell.value && isAtLeast("study")) openTab("table");
   }), []);
+  const states = { alone: isPanelHidden.value, still: isStill.value, "card-folded": isCardFolded.value };
+  const names = Object.entries(states).flatMap(([name, isSo]) => (isSo ? [name] : [])).join(" ");
   return html`
-    <div class=${`workspace ${isPanelHidden.value ? "alone" : ""} ${isStill.value ? "still" : ""}`} hidden=${isHidden}>
+    <div class=${`workspace ${names}`} hidden=${isHidden}>
       <${Stage} />
       ${!isStill.value && html`<${TimeBar} />`}
       ${isProjected.value && html`<${Slot} name="controls while projected" />`}

@@ -4,9 +4,9 @@ import {
   runPrimaryAction, secondaryActions, showOnStage, stop,
 } from "../actions.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
-import { sentence, whole } from "../format.js";
+import { percentage, sentence, whole } from "../format.js";
 import { ignored, page } from "../page-state.js";
-import { isPhone } from "../page.js";
+import { isFootOpen, isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
 import { isGuest, isOperator, mayChange, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
@@ -20,13 +20,12 @@ import { Loaded, Slot } from "../features.js";
 
 export const Foot = () => (mayStart.value ? html`<${Actions} />` : html`<${Spectator} />`);
 
+const isAtWork = () => Boolean(myWork.value) || Boolean(pending.value.start);
+
 function Actions() {
-  const isBusy = Boolean(myWork.value) || pending.value.start;
-  const label = isBusy ? busyLabel() : primaryAction.value.label;
-  const isDisabled = isBusy || !canStart.value;
+  const isBusy = isAtWork();
   // As it is by default it is short.
   const isChanged = page.form.value.size > 0;
-  const isHeld = !isBusy && Object.keys(mistakes.value).length > 0;
   return html`
     <div class="actions" role="group" aria-label="Actions">
       <${Interrupted} />
@@ -36,19 +35,16 @@ function Actions() {
       <${Problem} at="work" />
       <${Problem} at="tune" />
       <${UnknownParts} parts=${ignored.query} />
-      ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
-      ${!isBusy && isChanged && html`<${Slot} name="estimate" />`}
+      ${isHeldBack() && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
+      ${!isBusy && isChanged && !isPhone.value && html`<${Slot} name="estimate" />`}
       ${!isBusy && html`<${MissingLane} />`}
       <${Slot} name="actions" />
       <${WorkActions} />
       ${isAway.value && html`
         <p class="dim" id="held-away">Nothing can be started or stopped until the server is back.</p>
       `}
-      ${!myWork.value && html`
-        <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
-          aria-describedby=${isAway.value ? "held-away" : isHeld ? "held-start" : undefined}>
-          ${!isBusy && html`<${Icon} name="play" />`}${label}
-        </button>
+      ${!myWork.value && !isPhone.value && html`
+        <${PrimaryButton} />
         ${hasRoomForOthers() && html`<${SecondaryActions} />`}
       `}
     </div>
@@ -99,9 +95,50 @@ function MissingLane() {
   `;
 }
 
-/** The tabs in which runs are prepared; on a phone the others need the room. */
-const hasRoomForOthers = () =>
-  isAtLeast("try") && (tab.value === "train" || (!isPhone.value && tab.value === "board"));
+/** Whether a start waits for settings that are not valid. */
+const isHeldBack = () => !isAtWork() && Object.keys(mistakes.value).length > 0;
+
+/** The button that starts what comes next, in short where there is little room. @param {{ isShort?: boolean }} props */
+function PrimaryButton({ isShort = false }) {
+  const isBusy = isAtWork();
+  const label = isBusy ? busyLabel() : primaryAction.value.label;
+  const isDisabled = isBusy || !canStart.value;
+  return html`
+    <button class=${`primary ${isShort ? "short" : ""}`} aria-disabled=${isDisabled ? "true" : undefined}
+      aria-label=${isShort ? label : undefined} onClick=${runPrimaryAction}
+      aria-describedby=${isAway.value ? "held-away" : isHeldBack() ? "held-start" : undefined}>
+      ${!isBusy && html`<${Icon} name="play" />`}${isShort ? label.split(" ")[0] : label}
+    </button>
+  `;
+}
+
+/** On a phone, beside the title: the start, and what opens the foot of the panel, with how far the work is. */
+export function FoldedFoot() {
+  if (!mayStart.value) return isAtLeast("try") && html`<${FootFold} words="Choices" />`;
+  return html`
+    ${work.value && html`<${FootFold} words=${percentage(progress.value?.share ?? 0)} of="Progress" />`}
+    ${!myWork.value && html`<${PrimaryButton} isShort=${true} />`}
+  `;
+}
+
+/** @param {{ words: string, of?: string }} props */
+const FootFold = ({ words, of = "" }) => html`
+  <button class="secondary compact" aria-expanded=${isFootOpen.value ? "true" : "false"} aria-controls="panel-foot"
+    onClick=${() => (isFootOpen.value = !isFootOpen.value)}>
+    ${of && html`<span class="sr-only">${of}: </span>`}<span class="num">${words}</span>
+  </button>
+`;
+
+/** On a phone, below the settings of the next run: how long it takes, and the other ways to start. */
+export const OtherStarts = () => mayStart.value && !isAtWork() && html`
+  <div class="actions" role="group" aria-label="Other ways to start">
+    ${page.form.value.size > 0 && html`<${Slot} name="estimate" />`}
+    <${SecondaryActions} />
+  </div>
+`;
+
+/** The tabs in which runs are prepared. */
+const hasRoomForOthers = () => isAtLeast("try") && ["train", "board"].includes(tab.value);
 
 const SecondaryActions = () => html`
   <div class="others">

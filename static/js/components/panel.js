@@ -5,7 +5,7 @@ import { Loaded, Part, partsOf, Slot } from "../features.js";
 import { moveTold, narrative } from "../headline.js";
 import { phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { isPhone, isProjected } from "../page.js";
+import { isCardFolded, isFootOpen, isPhone, isProjected } from "../page.js";
 import { isOperator } from "../selectors.js";
 import { scale } from "../time.js";
 import {
@@ -14,7 +14,7 @@ import {
 } from "../workspace.js";
 import { Board } from "./board.js";
 import { html, Icon } from "./elements.js";
-import { Foot } from "./foot.js";
+import { FoldedFoot, Foot, OtherStarts } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */
 
@@ -33,7 +33,7 @@ export function Panel() {
       ${isAtLeast("try") && !isPhone.value && html`<${Tabs} />`}
       <${Body} name=${tab.value} key=${tab.value} />
       ${pinnedTab.value && html`<${Pinned} name=${pinnedTab.value} key=${`pinned ${pinnedTab.value}`} />`}
-      <div class="foot">
+      <div class=${`foot ${isPhone.value && !isFootOpen.value ? "folded" : ""}`} id="panel-foot">
         ${isProjected.value ? html`<${Slot} name="foot of what is projected" />` : html`<${Foot} />`}
       </div>
     </aside>
@@ -44,7 +44,7 @@ export function Panel() {
 
 /** Three lines at most, whatever they say: what is below never moves. */
 function Reason() {
-  const isOfMove = tab.value === explainingTab.value;
+  const isOfMove = isMoveTold();
   const { title, words, color } = isOfMove ? ofMove() : ofRun();
   return html`
     <header class="reason" aria-label=${isOfMove ? "The move" : "How it stands"}>
@@ -52,12 +52,18 @@ function Reason() {
         <h2 style=${{ "--agent": color }}>
           ${color !== "transparent" && html`<span class="swatch" aria-hidden="true"></span>`}${title}
         </h2>
-        <p>${words}</p>
+        ${!isPhone.value && html`<p>${words}</p>`}
       </div>
-      ${!isAtLeast("try") && html`<div class="ways"><${Ways} isOfMove=${isOfMove} /></div>`}
+      ${isPhone.value && html`<div class="starts"><${FoldedFoot} /></div>`}
+      ${!isPhone.value && !isAtLeast("try") && html`<div class="ways"><${Ways} isOfMove=${isOfMove} /></div>`}
     </header>
   `;
 }
+
+const isMoveTold = () => tab.value === explainingTab.value;
+
+/** What the head says below its title, which on a phone the open tab begins with. */
+const ReasonOnPhone = () => html`<p class="reason-on-phone">${(isMoveTold() ? ofMove() : ofRun()).words}</p>`;
 
 /** In Watch, which has no tabs: from the board to the explanation of a step, and back. */
 /** @param {{ isOfMove: boolean }} props */
@@ -125,12 +131,20 @@ function Tab({ name }) {
   `;
 }
 
-/** On a phone the tabs are at the thumb: those of its depth, and of who watches the two that explain. */
+/**
+ * On a phone the tabs are at the thumb: those of its depth, and of who watches the two that explain; before them what
+ * folds the lesson's card, where there is one.
+ */
 export function ThumbTabs() {
   const names = isAtLeast("try") ? tabs.value : ["board", ...(explainingTab.value ? [explainingTab.value] : [])];
+  const fold = () => (isCardFolded.value = !isCardFolded.value);
   return html`
-    <div class="thumb-tabs" role="tablist" aria-label="Panel" onKeyDown=${moveByKey}>
-      ${names.map((name) => html`<${Tab} key=${name} name=${name} />`)}
+    <div class="thumb-bar">
+      <button class="card-fold" aria-expanded=${isCardFolded.value ? "false" : "true"} onClick=${fold}>Card</button>
+      <div class="thumb-tabs" role="tablist" aria-label="Panel" onKeyDown=${moveByKey}
+        onClick=${() => (isCardFolded.value = true)}>
+        ${names.map((name) => html`<${Tab} key=${name} name=${name} />`)}
+      </div>
     </div>
   `;
 }
@@ -162,7 +176,9 @@ function Body({ name }) {
   return html`
     <div class=${`body ${followed ? "follows" : ""}`} id="panel-body" ref=${body} tabindex=${followed ? 0 : undefined}
       ...${attributes}>
+      ${isPhone.value && html`<${ReasonOnPhone} />`}
       <${Contents} name=${name} />
+      ${isPhone.value && name === "train" && html`<${OtherStarts} />`}
     </div>
   `;
 }

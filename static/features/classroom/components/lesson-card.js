@@ -1,10 +1,11 @@
 // The lesson's card below the time bar: a question or a task, one's own prediction, and the way to the next one.
 import { signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import {
   card, cardNumber, cards, closeLesson, linked, linkProblem, outcome, predict, predictable, prediction, turnCard,
 } from "../lesson.js";
 import { listed } from "../../../js/format.js";
-import { isPhone } from "../../../js/page.js";
+import { isCardFolded, isPhone } from "../../../js/page.js";
 import { isAtLeast } from "../../../js/workspace.js";
 import { html } from "../../../js/components/elements.js";
 import { Loaded, withStyle } from "../../../js/features.js";
@@ -17,6 +18,10 @@ const loadReader = () =>
 
 export function LessonCard() {
   const shown = card.value;
+  // A new one is not folded, as on a phone the one before may be.
+  useEffect(() => {
+    isCardFolded.value = false;
+  }, [cardNumber.value]);
   if (linkProblem.value) return html`<${NoLesson} />`;
   if (!shown) return null;
   const isLast = cardNumber.value === cards.value.length;
