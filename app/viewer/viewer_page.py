@@ -22,6 +22,8 @@ STAGE_SCRIPTS = (
     "legs.js",
     "camera.js",
     "inspection.js",
+    "light.js",
+    "shadows.js",
     "labels.js",
 )
 ALLOWED_QUERY = frozenset(

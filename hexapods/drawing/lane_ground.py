@@ -11,9 +11,10 @@ from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
 from hexapods.drawing.colormap import Rgb, mix
 from hexapods.drawing.condition_colors import HOLLOW, TOP, UPHILL, ground_color
+from hexapods.drawing.lane_marks import BEFORE_M, BEYOND_M, BORDER_M
 from hexapods.drawing.shapes import Shape, arrow, outlined, surface
 from hexapods.drawing.temporary import Temporary
-from hexapods.drawing.track import BEFORE_M, BEYOND_M, SQUARE_M, TICKS_M
+from hexapods.drawing.track import SQUARE_M
 from hexapods.drawing.viser_internals.client import batch_colors
 from hexapods.shows.stage_frame import Origin
 
@@ -35,7 +36,7 @@ class LaneGround(Temporary):
         server: viser server to draw on.
         root: scene node of the ground.
         x_m: centre of the lane [m].
-        width_m: width of the lane, at whose borders ticks stay visible.
+        width_m: width of the lane, at whose borders its own ground stays visible.
         friction: friction of ground that no disturbance has changed.
         is_labelled: whether a slope is labelled here.
     """
@@ -51,7 +52,7 @@ class LaneGround(Temporary):
         is_labelled: bool,
     ) -> None:
         super().__init__(server, root, x_m)
-        self._half_m, self._friction = width_m / 2 - TICKS_M, friction
+        self._half_m, self._friction = width_m / 2 - BORDER_M, friction
         self._is_labelled = is_labelled
 
     def draw(self, conditions: World, origin: Origin) -> None:
@@ -146,7 +147,7 @@ class LaneGround(Temporary):
             self._server.scene.add_label(
                 f"{self._root}/degrees{number}",
                 f"{slope.degrees:g}° uphill",
-                position=(self._half_m + TICKS_M, y, top_m),
+                position=(self._half_m + BORDER_M, y, top_m),
                 anchor="center-center",
             )
 

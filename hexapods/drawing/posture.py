@@ -41,5 +41,7 @@ def draw_posture(
     """
     qpos = posture(spec, cells)
     server.scene.add_frame(root, show_axes=False)
-    ghost = Robots(server, root, spec, RobotMesh(spec.robot), [0.0], is_ghost=True)
+    # It stands about where the robot does, whose shadows are there.
+    mesh = RobotMesh(spec.robot)
+    ghost = Robots(server, root, spec, mesh, [0.0], is_ghost=True, has_shadows=False)
     ghost.draw([LaneFrame(qpos, 0, 0, 0.0, conditions=conditions)])

@@ -76,16 +76,18 @@ class RobotMesh:
         """Return the joint that moves a link, by the link's body id; None for the torso."""
         return self._joint_of_link.get(link)
 
-    def part_name(self, number: int) -> str:
+    def part_name(self, number: int, *, is_ghost: bool = False) -> str:
         """Return the name of a part's scene node: whose links its instances are.
 
         `1/legs-1-2-3` has the links of these legs, in this order, of each lane; by it
-        `static/viewer/legs.js` finds which leg was clicked.
+        `static/viewer/legs.js` finds which leg was clicked, and `static/viewer/shadows.js` what is
+        near the ground. Those of a ghost, which cannot be clicked, are `1/ghost-legs-1-2-3`.
         """
+        kind = f"{number}/{'ghost-' if is_ghost else ''}"
         joints = [self._joint_of_link.get(link) for link in self.parts[number].links.tolist()]
         if None in joints:
-            return f"{number}/torso"
-        return f"{number}/legs-{'-'.join(str(joint.leg) for joint in joints if joint)}"
+            return f"{kind}torso"
+        return f"{kind}legs-{'-'.join(str(joint.leg) for joint in joints if joint)}"
 
     @property
     def default_qpos(self) -> FloatArray:

@@ -11,6 +11,7 @@ from hexapods.domain.text import metres, whole
 from hexapods.domain.types import IntArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.drawing.colormap import Rgb, mix, rgb
+from hexapods.drawing.contact_shadows import add_robot_shadows
 from hexapods.drawing.robot_mesh import Part, RobotMesh
 from hexapods.drawing.shapes import flag
 from hexapods.drawing.viser_internals.batches import move_instances
@@ -18,8 +19,9 @@ from hexapods.drawing.viser_internals.client import batch_colors
 from hexapods.runs.clocks import FINISH_LINE_M
 from hexapods.shows.stage_frame import LaneFrame, LaneSpec, SceneSpec
 
-_DARK: Rgb = (88, 96, 110)
-_SHADE = 0.25
+_UNPAINTED: Rgb = (92, 99, 113)
+_SHADE = 0.14
+"""Share of the agent's colour in the colour of unpainted parts."""
 GHOST_OPACITY = 0.4
 _FLAG_M = 0.22
 _TEXT_SCALE = 1.35
@@ -36,6 +38,7 @@ class Robots:
         mesh: the robot.
         xs: centres of the lanes [m].
         is_ghost: whether they are translucent, each all in its agent's colour.
+        has_shadows: whether they darken the ground below them.
     """
 
     def __init__(
@@ -47,6 +50,7 @@ class Robots:
         xs: Sequence[float],
         *,
         is_ghost: bool = False,
+        has_shadows: bool = True,
     ) -> None:
         self._mesh, self._xs = mesh, xs
         self._lane_colors = [lane_spec.color for lane_spec in spec.lane_specs]
@@ -61,7 +65,7 @@ class Robots:
             colors, _ = self._looks(part)
             positions, wxyzs = self._drawn[number]
             handle = server.scene.add_batched_meshes_simple(
-                f"{root}/{number if is_ghost else mesh.part_name(number)}",
+                f"{root}/{mesh.part_name(number, is_ghost=is_ghost)}",
                 part.shape.vertices,
                 part.shape.faces,
                 batched_positions=positions,
@@ -69,10 +73,12 @@ class Robots:
                 batched_colors=batch_colors(colors),
                 opacity=GHOST_OPACITY if is_ghost else None,
                 lod="off",
-                cast_shadow=not is_ghost,
+                cast_shadow=False,
                 receive_shadow=False,
             )
             self._batches.append(handle)
+        if has_shadows:
+            add_robot_shadows(server, root, len(xs), len(spec.robot.legs), is_ghost=is_ghost)
 
     def draw(self, views: Sequence[LaneFrame | None]) -> None:
         """Update poses and legs from the views of the lanes.
@@ -100,7 +106,9 @@ class Robots:
         colors: list[Rgb | None] = []
         for color, conditions in zip(self._lane_colors, self._conditions, strict=True):
             lane_color = (
-                rgb(color) if part.painted or self._is_ghost else mix(_DARK, rgb(color), _SHADE)
+                rgb(color)
+                if part.painted or self._is_ghost
+                else mix(_UNPAINTED, rgb(color), _SHADE)
             )
             if conditions is None:
                 colors += [None] * len(part.links)

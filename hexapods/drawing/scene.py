@@ -5,13 +5,14 @@ from itertools import zip_longest
 
 import viser
 
+from hexapods.drawing.colormap import rgb
 from hexapods.drawing.footgrid import FootGridDrawing
 from hexapods.drawing.ghosts import Ghosts, PhotoFinish
 from hexapods.drawing.lane_ground import LaneGround
 from hexapods.drawing.payload_and_push import PayloadCube, PushArrows
 from hexapods.drawing.robot_mesh import RobotMesh, antenna_m
 from hexapods.drawing.robots import NameLabel, Robots
-from hexapods.drawing.track import LAMP, SQUARE_M, WORLD, Position, draw_ground, draw_lanes
+from hexapods.drawing.track import WORLD, Position, draw_ground, draw_lanes
 from hexapods.shows.stage_frame import AT_ORIGIN, LaneFrame, SceneSpec, StageFrame
 
 SCENE_ROOT = f"{WORLD}/run"
@@ -37,8 +38,7 @@ class StageScene:
         self._run_scene: _RunScene | None = None
         self._scenes = -1
         self._follow_positions: dict[str, Position] = {}
-        self._lamp_y_m = 0.0
-        self._lamp = draw_ground(server)
+        draw_ground(server)
 
     def draw(self, frame: StageFrame) -> None:
         """Draw a frame of the stage."""
@@ -55,13 +55,6 @@ class StageScene:
         """Return the follow point of a view on the track [m]: `leader`, or a lane from `1`."""
         return self._follow_positions.get(view)
 
-    def _move_lamp(self, y_m: float) -> None:
-        """Move the lamp along the track to y [m]."""
-        if y_m != self._lamp_y_m:
-            self._lamp_y_m = y_m
-            x, y, z = LAMP
-            self._lamp.position = (x, y + y_m, z)
-
     def _update_follow_positions(self, frame: StageFrame, xs: list[float]) -> None:
         """Update the follow points.
 
@@ -69,7 +62,6 @@ class StageScene:
         """
         leader = max(frame.lanes, key=lambda lane: lane.distance_m)
         y_m = float(leader.qpos[1])
-        self._move_lamp(round(y_m / SQUARE_M) * SQUARE_M)
         offset_m = (
             _STEP_FORWARD_M
             if len(frame.lanes) == 1
@@ -97,7 +89,9 @@ class _RunScene:
         # A training has a last lane for the ghosts of its evaluations.
         lanes = len(lane_specs) + (spec.kind == "training")
         xs = [width * (lane - (lanes - 1) / 2) for lane in range(lanes)]
-        self._lines = draw_lanes(server, f"{SCENE_ROOT}/track", xs, width)
+        # Of the lane of ghosts, whose are those of the first.
+        colors = [rgb(lane_spec.color) for lane_spec in (*lane_specs, lane_specs[0])[:lanes]]
+        self._lines = draw_lanes(server, f"{SCENE_ROOT}/track", xs, width, colors)
         self._grounds = [
             LaneGround(
                 server,

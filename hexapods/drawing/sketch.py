@@ -13,9 +13,10 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.robot_model import ModelMesh, Vector
 from hexapods.domain.types import FloatArray
 from hexapods.drawing.colormap import Rgb, rgb
+from hexapods.drawing.contact_shadows import SHADOWS, TORSO_REACH, add_shadows
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.shapes import Shape, disc, joined
-from hexapods.drawing.track import LAMP, WORLD, draw_ground
+from hexapods.drawing.track import WORLD, draw_ground
 from hexapods.imports.imported import Sketch, SketchFoot, SketchPart
 
 SKETCH_ROOT = f"{WORLD}/sketch"
@@ -28,8 +29,12 @@ TABLE_MARGIN, _TABLE_CORNERS = 1.12, 96
 """Radius of the turntable relative to that of the robot."""
 _ABOVE_M = 0.0005
 """Height of the turntable over the ground, for a robot of the usual size."""
+_SHADOWS_ABOVE_M = 0.0015
+"""Height of the shadows over the ground, for a robot of the usual size."""
 _USUAL_M = 0.35
-"""Radius of a robot for which the lamp of the stage stands right."""
+"""Radius of a robot of the usual size."""
+_FOOT_SHADOW = 2.2
+"""Radius of the shadow of a foot, which fades out, relative to the foot's."""
 
 
 def draw_sketch(
@@ -44,11 +49,9 @@ def draw_sketch(
         sketch: bodies and feet.
         groups: legs of each group, from 1; without any all legs have one colour.
     """
-    lamp = draw_ground(server)
+    draw_ground(server)
     radius_m = radius_of(sketch)
     size = radius_m / _USUAL_M
-    x, y, z = LAMP
-    lamp.position = (x * size, y * size, z * size)
     scene = server.scene
     scene.add_frame(SKETCH_ROOT, show_axes=False)
     table = disc(radius_m * TABLE_MARGIN, _TABLE_CORNERS)
@@ -61,6 +64,7 @@ def draw_sketch(
         position=(0.0, 0.0, _ABOVE_M * size),
         cast_shadow=False,
     )
+    _draw_shadows(server, sketch, size)
     for number, part in enumerate(sketch.parts):
         if part.mesh is not None:
             corners, faces = part.mesh.arrays()
@@ -82,6 +86,23 @@ def draw_sketch(
             position=foot.at_m,
             cast_shadow=False,
         )
+
+
+def _draw_shadows(server: viser.ViserServer, sketch: Sketch, size: float) -> None:
+    """Draw the shadows of a torso and of feet, which are on the turntable or nearly so."""
+    places, radii = [], []
+    torso = [p.mesh.arrays()[0] for p in sketch.parts if not p.leg and p.mesh is not None]
+    if torso:
+        vertices = np.concatenate(torso)[:, :2]
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        places.append((low + high) / 2)
+        radii.append(TORSO_REACH * (high - low) / 2)
+    for foot in sketch.feet:
+        places.append(np.array(foot.at_m[:2]))
+        radii.append(np.full(2, _FOOT_SHADOW * foot.radius_m))
+    if places:
+        positions = np.column_stack([places, np.full(len(places), _SHADOWS_ABOVE_M * size)])
+        add_shadows(server, f"{SKETCH_ROOT}/{SHADOWS}", positions, np.array(radii))
 
 
 def radius_of(sketch: Sketch) -> float:

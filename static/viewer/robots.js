@@ -8,7 +8,7 @@
   const LEGS = /\/legs((?:-\d+)+)$/;
   const TORSO = /\/torso$/;
   /** Translucent robots of another run. Those of evaluations stay where they came, far behind in the end. */
-  const GHOST = /\/ghost-robots\/\d+$/;
+  const GHOST = /\/ghost-robots\/\d+\/ghost-/;
   /** What links are thicker than the line through them, of the robot's reach. */
   const THICKNESS = 1.07;
   const CORNERS = 8;

@@ -70,7 +70,10 @@ def test_a_ghost_is_drawn_in_the_grid_of_its_lane(parts: StageParts) -> None:
     assert opacities == {0.4}
     # The torso stands over the middle of the grid.
     for number, part in enumerate(mesh.parts):
-        drawn = np.frombuffer(state[f"{names[0]}/{number} batched_positions"], np.float32)
+        drawn = np.frombuffer(
+            state[f"{names[0]}/{mesh.part_name(number, is_ghost=True)} batched_positions"],
+            np.float32,
+        )
         if len(part.links) == 1:
             assert drawn[:2] == pytest.approx(0, abs=1e-6)
 

@@ -1,5 +1,6 @@
 """Legs to which something has happened, ghosts of the original race, and what name labels say."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -30,7 +31,7 @@ def looks(
     nodes, by_leg = scene_nodes(server), dict[int, list[Look]]()
     mesh = RobotMesh(spec.robot)
     for number, part in enumerate(mesh.parts):
-        name = mesh.part_name(number) if root == "robots" else number
+        name = mesh.part_name(number, is_ghost=root != "robots")
         node, count = nodes[f"/world/run/{root}/{name}"], len(part.links)
         colors = node["batched_colors"].reshape(-1, 3)[lane * count :][:count]
         scales = node["batched_scales"]
@@ -119,7 +120,7 @@ def test_original_is_a_ghost_on_the_lane_of_the_fork(server: RecordedViser) -> N
     original = replace(lane, qpos=ahead, distance_m=0.4)
     forked = frame_of(spec, lane_in(spec, Lost(legs=(2,))), lane)
     scene.draw(replace(forked, ghost_lanes=(original, None)))
-    node = scene_nodes(server)["/world/run/ghost-robots/0"]
+    node = scene_nodes(server)["/world/run/ghost-robots/0/ghost-torso"]
 
     assert 0 < node["opacity"] < 1
     y = node["batched_positions"].reshape(2, -1, 3)[0, 0, 1]
@@ -137,7 +138,7 @@ def test_ghost_of_an_evaluation_has_the_legs_of_its_time(server: RecordedViser) 
 
     def links_of_ghosts() -> int:
         nodes = scene_nodes(server).items()
-        parts = [node for name, node in nodes if "/robots-evaluated/" in name]
+        parts = [node for name, node in nodes if re.search(r"-evaluated/\d+/", name)]
         # A link that is lost is drawn with the size 0.
         return sum(int((node["batched_scales"] > 0).sum()) for node in parts)
 

@@ -80,18 +80,34 @@ def test_lanes_are_side_by_side_with_their_labels(server: RecordedViser) -> None
     assert labels == [f"{lane_spec.name}\n0.00\u00a0m, step 3" for lane_spec in spec.lane_specs]
 
 
-def test_start_and_finish_lines_are_labelled_and_coloured(server: RecordedViser) -> None:
-    StageScene(server).draw(frame_at_rest(race_of(1)))
+def test_start_and_finish_lines_are_labelled_beside_the_track(server: RecordedViser) -> None:
+    scene = StageScene(server)
+    scene.draw(frame_at_rest(race_of(2)))
     nodes = scene_nodes(server)
-    labels = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
+    words = {name: node for name, node in nodes.items() if name.endswith("/word")}
 
-    assert labels == {"Start", "Finish"}
-    red, green = nodes["/world/run/track/finish"], nodes["/world/run/track/start"]
-    assert np.argmax(red["color"]) == 0
-    assert np.argmax(green["color"]) == 1
-    # The middle legs of a robot on a line end on it: the words stand out of the track.
-    assert nodes["/world/run/track/start/word"]["position"][1] < -0.1
-    assert nodes["/world/run/track/finish/word"]["position"][1] > 0.1
+    assert {node["text"] for node in words.values()} == {"Start", "Finish"}
+    (first,) = {node["position"] for node in words.values()}
+    lanes = nodes["/world/run/track/finish"]["batched_positions"].reshape(-1, 3)
+    width = lanes[1, 0] - lanes[0, 0]
+    assert first[0] < lanes[0, 0] - width / 2, "where no robot walks"
+    assert nodes["/world/run/track/start"]["position"][1] == 0
+    assert nodes["/world/run/track/finish"]["position"][1] == FINISH_LINE_M
+
+
+def test_each_lane_is_tinted_also_that_of_evaluations(server: RecordedViser) -> None:
+    scene = StageScene(server)
+
+    def tints() -> list[bytes]:
+        nodes = scene_nodes(server)
+        names = sorted(name for name in nodes if "/track/tint" in name)
+        return [nodes[name]["glb_data"].tobytes() for name in names]
+
+    scene.draw(frame_at_rest(race_of(3)))
+    assert len(set(tints())) == 3
+    scene.draw(frame_at_rest(training_scene(training_config(gait=GAIT, divisions=3))))
+    assert len(tints()) == 2
+    assert len(set(tints())) == 1, "the ghost is of the same agent"
 
 
 def test_follow_point_of_the_leader_is_beside_the_robot_that_is_ahead(

@@ -182,7 +182,7 @@ def test_ghosts_are_drawn_over_their_lanes_and_beside_with_the_name_of_their_own
     mesh = RobotMesh(replays.get(other.id, "paper").show.spec.robot)
     ghosts = replays.get(other.id, "paper").frame_at(segment["frames"][-1]["time_s"]).lanes
     links = mesh.parts[0].links
-    name = f"{SCENE_ROOT}/ghost-robots/0 batched_positions"
+    name = f"{SCENE_ROOT}/ghost-robots/0/ghost-torso batched_positions"
     drawn = np.frombuffer(state[name], np.float32).reshape(2, len(links), 3)
 
     for ghost, positions in zip(ghosts, drawn, strict=True):

@@ -69,5 +69,10 @@ Assumed by `client`:
   which `static/viewer/inspection.js` puts the camera where a scene fills the picture, and
   `camera.js` hands it over. The scene's `onBeforeRender` is called when all nodes are where they
   will be drawn, and before the camera is read, so that `camera.js` places it there.
+- scene_is_prepared: the client itself has no `onBeforeRender` of the scene, by which also
+  `static/viewer/light.js` changes lights and materials before each frame; the materials of grids
+  have their colours as uniforms.
+- glb_is_an_array: the data of a GLB may be an array of bytes, which is sent as such, and the
+  client takes it; instances in a batch may have three scales each.
 - batched_colors_are_linear: colours of batched meshes are taken as linear, all others as sRGB.
 """

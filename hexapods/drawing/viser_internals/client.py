@@ -20,7 +20,15 @@ from numpy.typing import NDArray
 
 from hexapods import assets
 
-OFFLINE_SCRIPTS = ("client.js", "robots.js", "shots.js", "camera.js", "labels.js")
+OFFLINE_SCRIPTS = (
+    "client.js",
+    "robots.js",
+    "shots.js",
+    "camera.js",
+    "light.js",
+    "shadows.js",
+    "labels.js",
+)
 """The scripts of a page that is a file."""
 _HEAD = "<head>"
 _TITLE = "<title>Viser</title>"

@@ -489,6 +489,31 @@ def test_camera_is_controlled(client: str) -> None:
     )
 
 
+def test_scene_is_prepared(client: str) -> None:
+    assert re.search(r"isScene===!0&&\w+\.onBeforeRender\(", client)
+    # Its own are of meshes.
+    assert "scene.onBeforeRender=" not in client
+    for uniform in ("sectionColor", "planeOpacity"):
+        assert re.search(rf"uniforms\.{uniform}\.value", client)
+    script = (assets.static_dir() / "viewer" / "light.js").read_text("utf-8")
+    assert "uniforms?.sectionColor?.value" in script
+
+
+def test_glb_is_an_array(client: str, server: RecordedViser) -> None:
+    assert re.search(r"\.parse\(new Uint8Array\((\w)\)\.buffer,", client)
+    assert re.search(r"!==null&&\w===\w/4\*3;", client), "three scales of an instance"
+    from hexapods.drawing.viser_internals.recorder import recorder
+
+    data = np.arange(12, dtype=np.uint8)
+    with recorder(server) as recording:
+        server.scene.add_glb("/world/x", data)  # type: ignore[arg-type]
+        messages, arrays = recording.take()
+    (message,) = [message for message in messages if message["type"] == "GlbMessage"]
+    reference = message["props"]["glb_data"]
+    assert reference["dtype"] == "|u1"
+    assert bytes(arrays[reference["__binary_index"]]) == data.tobytes()
+
+
 def test_batched_colors_are_linear(server: RecordedViser, page: Page) -> None:
     from hexapods.drawing.viser_internals.client import batch_colors
     from hexapods.drawing.viser_internals.recorder import recorder
