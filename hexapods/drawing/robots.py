@@ -154,6 +154,8 @@ def label_text(
 ) -> str:
     """Return name, distance and activity, in lines so short that three labels fit on a phone.
 
+    From its crossing on a robot has the time of that in place of its activity.
+
     Args:
         lane_spec: name of the lane.
         lane: the lane.
@@ -161,8 +163,9 @@ def label_text(
         ghost_name: what the ghost is, in a word.
         is_ranked: whether it is the photo finish, which tells places in place of activities.
     """
+    crossing = [] if lane.crossed_s is None else [f"crossed at {lane.crossed_s:.1f}\u00a0s"]
     if is_ranked:
-        return f"{lane.rank}. {lane_spec.name}\n{metres(lane.distance_m)}"
+        return "\n".join([f"{lane.rank}. {lane_spec.name}", metres(lane.distance_m), *crossing])
     if lane.failure is not None:
         return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
@@ -170,7 +173,9 @@ def label_text(
     lines = [lane_spec.name, f"{metres(lane.distance_m)}, {_progress(lane)}"]
     if ghost is not None:
         lines.append(f"{ghost_name} {metres(ghost.distance_m)}")
-    if lane.thinking:
+    if crossing:
+        lines += crossing
+    elif lane.thinking:
         futures = f" {lane.futures}/{lane.futures_total}" if lane.futures else "…"
         lines.append(f"thinking{futures}")
     elif lane.marching and lane.fell_at_step is None:
@@ -241,5 +246,6 @@ class NameLabel:
         text = label_text(self._lane_spec, lane, ghost, ghost_name, is_ranked=is_ranked)
         if text != self._label.text:
             self._label.text = text
-        if lane.crossed != self._flag.visible:
-            self._flag.visible = lane.crossed
+        has_crossed = lane.crossed_s is not None
+        if has_crossed != self._flag.visible:
+            self._flag.visible = has_crossed

@@ -22,6 +22,8 @@ from hexapods.runs.config import WalkingProblem
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25  # as in the live view (hexapods/drawing/scene.py)
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
+_SQUARE_M = 0.031
+"""Side of a square of the finish line [m]."""
 _CAPTION, _CAPTION_BOX = (236, 240, 245, 255), (13, 17, 23, 190)
 
 
@@ -178,17 +180,14 @@ def _model(shown: ShownPoses, width_m: float, options: VideoOptions) -> mujoco.M
         name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], material="grid"
     )
     world.add_light(pos=[-1.5, -1.5, 3.2], dir=[0.4, 0.4, -0.8], diffuse=[0.6] * 3)
-    for name, y_m, rgba in (
-        ("start", 0.0, [0.05, 0.5, 0.16, 1]),
-        ("finish", FINISH_LINE_M, [0.75, 0.08, 0.1, 1]),
-    ):
-        world.add_geom(
-            name=name,
-            type=mujoco.mjtGeom.mjGEOM_BOX,
-            pos=[0, y_m, 0.001],
-            size=[width_m / 2, 0.006, 0.001],
-            rgba=rgba,
-        )
+    world.add_geom(
+        name="start",
+        type=mujoco.mjtGeom.mjGEOM_BOX,
+        pos=[0, 0, 0.001],
+        size=[width_m / 2, 0.006, 0.001],
+        rgba=[0.05, 0.5, 0.16, 1],
+    )
+    _add_finish(spec, width_m)
     colors = colors_of(shown.agents)
     for number, color in enumerate(colors):
         built = shown.problem.built_robot
@@ -206,6 +205,29 @@ def _model(shown: ShownPoses, width_m: float, options: VideoOptions) -> mujoco.M
         robot.option.jacobian = spec.option.jacobian
         spec.attach(robot, prefix=f"lane{number}_", frame=world.add_frame())
     return spec.compile()
+
+
+def _add_finish(spec: mujoco.MjSpec, width_m: float) -> None:
+    """Add a chequered line in two rows."""
+    spec.add_texture(
+        name="chequers",
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.06, 0.07, 0.09],
+        rgb2=[1, 1, 1],
+        width=64,
+        height=64,
+    )
+    repeats = width_m / (2 * _SQUARE_M)
+    chequered = spec.add_material(name="chequered", texrepeat=[repeats, 1])
+    chequered.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "chequers"
+    spec.worldbody.add_geom(
+        name="finish",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        pos=[0, FINISH_LINE_M, 0.002],
+        size=[width_m / 2, _SQUARE_M, 0.1],
+        material="chequered",
+    )
 
 
 class _Caption:

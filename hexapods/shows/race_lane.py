@@ -115,7 +115,7 @@ class RaceLane:
             thinking=not moves and step.transitions > 0,
             futures=round(min(moment.thinking, 1.0) * step.transitions),
             futures_total=step.transitions,
-            crossed=self._crossed(time_s),
+            crossed_s=self._crossed_s(time_s),
             marching=self._marching(moment.step),
             fell_at_step=self._fall_before(moment.step),
             action_values=self._action_values(moment.step),
@@ -137,7 +137,7 @@ class RaceLane:
             futures_total=total if computing else 0,
             done=complete and self.is_over,
             halted=complete and not self.is_over,
-            crossed=self._crossed(time_s),
+            crossed_s=self._crossed_s(time_s),
             marching=self._marching(steps_taken),
             failure=lane.failure,
             fell_at_step=self._fall_before(steps_taken),
@@ -149,8 +149,10 @@ class RaceLane:
         fell = self.fell_at_step
         return fell if fell is not None and fell < steps_taken else None
 
-    def _crossed(self, time_s: float) -> bool:
-        return self.crossing_s is not None and time_s >= self.crossing_s
+    def _crossed_s(self, time_s: float) -> float | None:
+        """Return when it crossed the finish line, if that was before a race time [s]."""
+        is_before = self.crossing_s is not None and time_s >= self.crossing_s
+        return self.crossing_s if is_before else None
 
     def _marching(self, steps_taken: int) -> bool:
         """Whether the last `MARCHING_STEPS` of the steps taken gained under `MARCHING_M`."""

@@ -158,7 +158,7 @@ def _lane(number: int, lane: LaneFrame, spec: LaneSpec) -> SceneLane:
         futures_total=lane.futures_total,
         done=lane.done,
         halted=lane.halted,
-        crossed=lane.crossed,
+        crossed=lane.crossed_s is not None,
         rank=lane.rank,
         marching=lane.marching,
         failure=lane.failure,

@@ -99,8 +99,8 @@ class LaneFrame:
     """Whether it takes no further steps: it has used all of them, or failed."""
     halted: bool = False
     """Whether it takes no further steps because its run ended before, as one that was stopped."""
-    crossed: bool = False
-    """Whether it has crossed the finish line."""
+    crossed_s: float | None = None
+    """Race time at which it crossed the finish line [s]; None if it has not by now."""
     marching: bool = False
     """Whether it steps on the spot: under 1 cm gained in ten steps."""
     failure: str | None = None

@@ -162,6 +162,15 @@ def test_label_names_the_step_of_a_fall_counted_from_one() -> None:
     assert lines == [spec.lane_specs[0].name, "0.10\u00a0m, fell at step 12"]
 
 
+def test_label_has_the_time_of_the_crossing_from_then_on() -> None:
+    spec = race_of(1)
+    before = replace(lane_in(spec), step=14, distance_m=0.44, thinking=True, futures_total=12)
+    after = replace(before, distance_m=0.46, crossed_s=12.34)
+
+    assert label_text(spec.lane_specs[0], before).split("\n")[2:] == ["thinking…"]
+    assert label_text(spec.lane_specs[0], after).split("\n")[2:] == ["crossed at 12.3\u00a0s"]
+
+
 def test_label_of_a_fork_has_the_distance_of_the_original() -> None:
     spec = race_of(1)
     lane, original = lane_in(spec), replace(lane_in(spec), distance_m=0.31)

@@ -266,7 +266,7 @@ def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: RecordedViser) -
     scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
     assert not scene_nodes(server)["/world/run/lane0/flag"]["visible"], "time-out is no crossing"
 
-    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], crossed=True),)))
+    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], crossed_s=4.875),)))
     shown = scene_nodes(server)["/world/run/lane0/flag"]
     assert shown["visible"]
     assert shown["position"][1] == pytest.approx(FINISH_LINE_M)

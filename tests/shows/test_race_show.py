@@ -386,3 +386,22 @@ def test_moment_that_pages_know_by_milliseconds_is_that_of_a_step(
     assert [lane.distance_m for lane in frame.lanes] == [
         figure.finished_distance_m for figure in figures
     ]
+
+
+def test_a_crossing_has_its_time_from_then_on_and_that_of_the_shown_clock(
+    parts: StageParts,
+) -> None:
+    run = parts.finished_race(("q-learning", "greedy"), 70)
+    parts.stage.set(run_id=run.id, end_at_time_out=False)
+    lanes = parts.recordings.race(run.id) or []
+
+    def crossed_s(time_s: float) -> float | None:
+        parts.stage.set(time_s=time_s, playing=False)
+        return parts.next_frame().lanes[1].crossed_s
+
+    for clock in ("paper", "wall"):
+        parts.stage.set(clock=clock)
+        figures = lane_figures(lanes, 70, clock)[1]
+        assert figures.crossed_s is not None
+        assert crossed_s(figures.crossed_s - 0.1) is None
+        assert crossed_s(figures.crossed_s + 0.1) == pytest.approx(figures.crossed_s, abs=1e-3)

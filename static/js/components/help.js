@@ -55,8 +55,8 @@ export const HelpDialog = () => html`
       A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
       keeps in a table what each move is worth. Then it races against two robots that simulate their moves
       before they make one: greedy looks one step ahead, two-step looks two. Thinking costs time. At time-out,
-      when the first robot has used its steps, the one that is farthest wins. The red line is the finish line;
-      a flag shows who crossed it.
+      when the first robot has used its steps, the one that is farthest wins. The chequered line is the
+      finish line; who crossed it has a flag there, and the time in the label.
     </p>
     <${Reading} />
     <${Slot} name="sections of the help" />
