@@ -133,7 +133,7 @@ function Tab({ name }) {
 
 /**
  * On a phone the tabs are at the thumb: those of its depth, and of who watches the two that explain; before them what
- * folds the lesson's card, where there is one.
+ * folds the card below the stage, where there is one.
  */
 export function ThumbTabs() {
   const names = isAtLeast("try") ? tabs.value : ["board", ...(explainingTab.value ? [explainingTab.value] : [])];
