@@ -115,7 +115,8 @@ class TokenGuard:
         rest = urlencode([(name, value) for name, value in items if name != "token"])
         token = next(value for name, value in items if name == "token")
         # Relative, so that it is valid behind a proxy that serves the app under a prefix.
-        response = RedirectResponse(f"?{rest}" if rest else "./", 303)
+        page = scope["path"].rpartition("/")[2] or "./"
+        response = RedirectResponse(f"?{rest}" if rest else page, 303)
         response.headers["Cache-Control"] = "no-store"
         if not roles.needs_token:
             return response

@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import html
 import json
 import mimetypes
 import os
@@ -30,6 +31,10 @@ _INLINE_SCRIPT = re.compile(
 )
 _FEATURES = '<script type="application/json" id="features">[]</script>'
 _INDEX = "index.html"
+_HTML = '<html lang="en">'
+_TITLE = "<title>Racing Hexapods</title>"
+VIEWS: Mapping[str, str] = {"runs": "Runs", "compare": "Compare runs"}
+"""Titles of the core's views, beside that of the race, by their names; features add theirs."""
 _COMMON = re.compile(r"<!-- common -->\n(.*?)<!-- /common -->\n", re.DOTALL)
 _COMMON_OF_INDEX = "<!-- common: that of index.html -->\n"
 _IMPORT_MAP = re.compile(r'<script type="importmap">(.*?)</script>', re.DOTALL)
@@ -39,12 +44,17 @@ _IMPORT = re.compile(r'^import [^"]*"(\.[^"]+)";', re.MULTILINE)
 
 
 def page_routes(page_files: PageFiles) -> list[BaseRoute]:
-    """Return the routes of the page at `/`, as it is now, and of its files under `/static/`.
+    """Return the routes of the page at `/`, of its views, and of its files under `/static/`.
+
+    Each view has an address, as `/runs`: the same page beside the others, which opens the view.
 
     Args:
         page_files: folders of the files.
     """
-    index = page_content(_INDEX, page_files)
+    page = _page(_INDEX, page_files)
+    index = _content(page)
+    titles = view_titles(page_features(page_files))
+    views = {name: _content(_opening(page, name, title)) for name, title in titles.items()}
     left_out = [page_files.folder / "features" / name for name in page_files.without]
     files = _Files(page_files.folder, left_out)
     public = RoutePolicy(access=PUBLIC)
@@ -53,12 +63,17 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
     async def show(request: Request) -> Response:
         return index.response(request.scope)
 
+    @policy(access=PUBLIC, opens_session=True)
+    async def show_view(request: Request) -> Response:
+        return views[request.url.path.rpartition("/")[2]].response(request.scope)
+
     @policy(access=ANY_PAGE)
     async def favicon(request: Request) -> Response:
         return await files.get_response("favicon.svg", request.scope)
 
     return [
         GuardedPage("/", show, name="dashboard"),
+        *(GuardedPage(f"/{name}", show_view, name=f"view_{name}") for name in views),
         GuardedPage("/favicon.ico", favicon, name="favicon"),
         GuardedPage("/robots.txt", robots_txt, name="robots_txt"),
         # The page's files are public; the data they show is not.
@@ -72,15 +87,39 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
 
 def page_content(name: str, page_files: PageFiles) -> CompressedContent:
     """Return a page of the dashboard's folder, with preloads and a content security policy."""
+    return _content(_page(name, page_files))
+
+
+def _content(page: str) -> CompressedContent:
+    policy = {"Content-Security-Policy": content_policy(page)}
+    return CompressedContent(page.encode(), "text/html", policy)
+
+
+def _opening(page: str, view: str, title: str) -> str:
+    """Return the HTML of a page that opens a view, whose title it has."""
+    opening = page.replace(_HTML, f'{_HTML[:-1]} data-view="{html.escape(view)}">', 1)
+    return opening.replace(_TITLE, f"<title>{html.escape(title)} · Racing Hexapods</title>", 1)
+
+
+def _page(name: str, page_files: PageFiles) -> str:
+    """Return the HTML of a page of the dashboard's folder, with preloads."""
     folder, features = page_files.folder, page_features(page_files)
     page = with_preloads(
         _with_common_head(name, folder), folder, _start_modules(name, features, page_files)
     )
     # As "<" it could end the script that it stands in.
     declared = json.dumps(features, ensure_ascii=False).replace("<", "\\u003c")
-    page = page.replace(_FEATURES, _FEATURES.replace("[]", declared))
-    policy = {"Content-Security-Policy": content_policy(page)}
-    return CompressedContent(page.encode(), "text/html", policy)
+    return page.replace(_FEATURES, _FEATURES.replace("[]", declared))
+
+
+def view_titles(features: Sequence[Mapping[str, Any]]) -> Mapping[str, str]:
+    """Return the titles of the page's views but the first, by their names, which are paths.
+
+    Args:
+        features: declarations of the features' parts of the page, as `page_features` has them.
+    """
+    views = [feature.get("views", {}) for feature in features]
+    return {**VIEWS, **{name: view["title"] for named in views for name, view in named.items()}}
 
 
 def page_features(page_files: PageFiles) -> list[dict[str, Any]]:

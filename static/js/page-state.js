@@ -267,22 +267,31 @@ export const read = (address) => batch(() => {
   }
 });
 
-/** Keep the address and the page's state the same. The address that was opened is read first. */
+/** The view that the server has opened, as at "/runs"; "" at the page's own address. */
+const viewOfPath = () => document.documentElement.dataset.view ?? "";
+
+/**
+ * Keep the address and the page's state the same. The address that was opened is read first: one of a view, as
+ * "/runs?kind=race", becomes that of the page with the view, "/#runs?kind=race".
+ */
 export function followHistory() {
   let lastAddress = "";
+  const view = viewOfPath();
+  const { pathname } = view ? new URL(".", location.href) : location;
+  const isOfView = view !== "" && !location.hash;
   // At once, so that what follows from it is written over this entry of the history, and not to a new one.
-  const readAddress = () => batch(() => {
-    read(location);
+  const readAddress = (/** @type {{ search: string, hash: string }} */ address) => batch(() => {
+    read(address);
     lastAddress = entry();
   });
-  readAddress();
-  addEventListener("popstate", readAddress);
+  readAddress(isOfView ? { search: "", hash: `#${view}${location.search}` } : location);
+  addEventListener("popstate", () => readAddress(location));
   effect(() => {
     const [address, now] = [write(), entry()];
     const isOther = now !== lastAddress;
     lastAddress = now;
-    if (address === `${location.search}${location.hash}`) return;
-    history[isOther ? "pushState" : "replaceState"](history.state, "", `${location.pathname}${address}`);
+    if (`${pathname}${address}` === `${location.pathname}${location.search}${location.hash}`) return;
+    history[isOther ? "pushState" : "replaceState"](history.state, "", `${pathname}${address}`);
   });
 }
 

@@ -263,6 +263,7 @@ export interface TabKind {
   /** Whether Watch shows it too, with a way back, though it lists no tabs. */
   isInWatch?: boolean;
 }
+/** A view; the server has the page at its name too, as `/lessons`. */
 export interface ViewPart extends LoadedPart {
   title: string;
   /** Whether the header has a link to it. */
@@ -283,6 +284,8 @@ export interface FeatureKey {
 }
 export interface MenuRow {
   title: string | (() => string);
+  /** The group of the page's menu in which it stands: `share`, `class`, `page`, or `help`; `page` without one. */
+  group?: string;
   /** Its place among the rows of features. */
   order?: number;
   icon?: string;

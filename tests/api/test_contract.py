@@ -33,9 +33,9 @@ from tests.features.needing import needs
 from tests.storage.stores import temporary_store
 
 PAGES = {
-    *("/", "/docs", "/favicon.ico", "/guide/{name}"),
-    *("/l/{lesson_id}", "/openapi.json", "/r/{code}", "/r/{code}/"),
-    *("/robots.txt", "/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
+    *("/", "/compare", "/docs", "/experiments", "/favicon.ico", "/guide", "/guide/{name}"),
+    *("/l/{lesson_id}", "/lessons", "/openapi.json", "/r/{code}", "/r/{code}/"),
+    *("/robots.txt", "/runs", "/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
 }
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]

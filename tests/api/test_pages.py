@@ -13,10 +13,12 @@ from starlette.testclient import TestClient
 from app.api.compression import CompressedContent, accepts_gzip
 from app.api.deps import PageFiles
 from app.api.pages import (
+    VIEWS,
     content_policy,
     imported_modules,
     page_features,
     page_routes,
+    view_titles,
     with_preloads,
 )
 from hexapods import assets
@@ -183,6 +185,43 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
         assert page.count(f'<link rel="modulepreload" href="{module}">') == 1
         assert api.client.get(f"/{module}").status_code == 200
     assert page.index("importmap") < page.index("modulepreload")
+
+
+def test_each_view_has_an_address_at_which_the_page_opens_it(api: Api) -> None:
+    index = api.client.get("/").text
+    titles = view_titles(page_features(PageFiles(assets.static_dir())))
+    assert {"runs", "compare"} <= titles.keys()
+    for name, title in titles.items():
+        page = api.client.get(f"/{name}")
+        assert page.status_code == 200
+        assert f'<html lang="en" data-view="{name}">' in page.text
+        assert f"<title>{title} · Racing Hexapods</title>" in page.text
+        # It stands beside the page, so that all its relative links lead where those of that do.
+        assert re.findall('(?:src|href)="([^"]+)"', page.text) == re.findall(
+            '(?:src|href)="([^"]+)"', index
+        )
+        assert page.headers["content-security-policy"] == content_policy(page.text)
+
+
+@pytest.mark.parametrize("path", ["/run", "/runs/x", "/race", "/Runs", "/nothing"])
+def test_no_other_address_has_the_page(api: Api, path: str) -> None:
+    assert api.client.get(path, follow_redirects=False).status_code == 404
+
+
+@needs("experiments")
+def test_a_view_of_a_feature_that_is_left_out_has_no_address(shared: Callable[..., Api]) -> None:
+    client = shared(without=("experiments",)).client
+    assert (client.get("/runs").status_code, client.get("/experiments").status_code) == (200, 404)
+
+
+def test_the_views_of_the_core_have_the_titles_of_the_page() -> None:
+    folder = assets.static_dir() / "js"
+    names = re.search(r'VIEWS = \["race", (.+?)\];', (folder / "page-state.js").read_text("utf-8"))
+    titles = re.search("VIEW_TITLES = {(.+?)};", (folder / "on-stage.js").read_text("utf-8"))
+    assert names is not None
+    assert titles is not None
+    assert re.findall(r"\w+", names[1]) == [*VIEWS]
+    assert dict(re.findall(r'(\w+): "([^"]+)"', titles[1])) == VIEWS
 
 
 @needs("classroom")

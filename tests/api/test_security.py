@@ -255,6 +255,8 @@ def test_token_link_sets_a_cookie_and_redirects_without_the_token(serve: Serve) 
         assert said.lower() in cookie.lower()
     assert TOKEN not in cookie
     assert client.put("/api/v1/stage", json={"playing": True}).status_code == 200
+    of_view = client.get(f"/runs?token={TOKEN}", follow_redirects=False)
+    assert (of_view.status_code, of_view.headers["location"]) == (303, "runs")
     refused(client.get("/?token=wrong"), 401, "not the server's token")
     page = client.get("/?token=wrong", headers={"Accept": "text/html,*/*;q=0.8"})
     assert (page.status_code, page.headers["content-type"]) == (401, "text/html; charset=utf-8")

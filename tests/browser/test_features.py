@@ -78,7 +78,7 @@ def test_a_race_runs_on_a_page_without_features(
     explains = dashboard.page.get_by_role("button", name=re.compile("^Explain"))
     expect(explains).to_have_count(0 if "explanations" in without else 1)
     dashboard.page.get_by_label("More", exact=True).first.click()
-    expect(dashboard.page.get_by_role("button", name="Keys and help")).to_be_visible()
+    expect(dashboard.page.get_by_role("menuitem", name="Keys and help")).to_be_visible()
     said = dashboard.page.locator("#app").inner_text()
     response = dashboard.page.request.get(f"{server.address}static/features/classroom/feature.js")
     assert response.status == 404

@@ -43,7 +43,7 @@ def test_a_lesson_is_made_exported_imported_and_taught(
 
 def lessons_of(dashboard: Dashboard) -> None:
     dashboard.page.get_by_label("More", exact=True).click()
-    dashboard.page.get_by_role("link", name="Lessons").click()
+    dashboard.page.get_by_role("menuitem", name="Lessons").click()
 
 
 def makes_a_lesson(dashboard: Dashboard) -> None:

@@ -70,7 +70,38 @@ def menu(page: Page, item: str) -> None:
     """Choose an item of the menu in the header."""
     banner = page.get_by_role("banner")
     banner.get_by_label("More", exact=True).click()
-    banner.get_by_role("button", name=item, exact=True).click()
+    banner.get_by_role("menuitem", name=item, exact=True).click()
+
+
+def test_the_menu_is_in_groups_and_moved_through_by_keys(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    page.goto(f"{shared_server.address}runs")
+    expect(page).to_have_url(f"{shared_server.address}#runs")
+    expect(page).to_have_title("Runs · Racing Hexapods")
+    more = page.get_by_label("More", exact=True)
+    more.focus()
+    page.keyboard.press("ArrowDown")
+    menu = page.get_by_role("menu")
+    expect(menu.get_by_role("menuitem", name="Copy a link to this")).to_be_focused()
+    titles = menu.get_by_role("group").evaluate_all("all => all.map((group) => group.ariaLabel)")
+    assert titles == ["Share", "With a class", "This page", "Help"]
+    page.keyboard.press("ArrowUp")
+    expect(menu.get_by_role("menuitem", name="Keys and help")).to_be_focused()
+    page.keyboard.press("Home")
+    page.keyboard.press("l")
+    expect(menu.get_by_role("menuitem", name="Lessons")).to_be_focused()
+    weights = "all => [...new Set(all.map((item) => getComputedStyle(item).fontWeight))]"
+    assert menu.get_by_role("menuitem").evaluate_all(weights) == ["500"]
+    assert dashboard.violations() == []
+    page.keyboard.press("Escape")
+    expect(more).to_be_focused()
+    expect(menu).to_be_hidden()
+    page.keyboard.press("Enter")
+    page.keyboard.press("End")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog")).to_contain_text("Keys")
 
 
 def test_fields_have_room_and_views_have_the_same_edges(
@@ -198,8 +229,8 @@ def test_the_3d_view_has_the_theme_and_forwards_keys(dashboard: Dashboard, serve
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
 
     page.get_by_label("More", exact=True).click()
-    page.get_by_role("button", name="Theme: auto").click()
-    page.get_by_role("button", name="Theme: light").click()
+    page.get_by_role("menuitem", name="Theme: auto").click()
+    page.get_by_role("menuitem", name="Theme: light").click()
     for document in (page, dashboard.view):
         expect(document.locator("html")).to_have_attribute("data-theme", "dark")
     page.reload()

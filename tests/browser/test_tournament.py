@@ -248,7 +248,7 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         dashboard = Dashboard(page, has_3d=False)
         dashboard.open(f"{school.address}?token={TOKEN}&simulator=kinematic")
         page.get_by_label("More", exact=True).click()
-        dashboard.button("Tournaments…").click()
+        page.get_by_role("menuitem", name="Tournaments…").click()
         assert dashboard.violations_in_both_themes() == []
         dashboard.button("Open a tournament…").click()
         dialog = page.get_by_role("dialog", name="Open a tournament")

@@ -64,7 +64,7 @@ def test_its_row_is_in_the_menu(tmp_path: Path, flat_browser: Browser) -> None:
         dashboard = Dashboard(page, has_3d=False)
         dashboard.open(server.address)
         page.get_by_label("More", exact=True).first.click()
-        page.get_by_role("button", name="Journal…").click()
+        page.get_by_role("menuitem", name="Journal…").click()
         journal = page.get_by_role("dialog", name="Journal")
         expect(journal.get_by_text("Nothing is written yet.")).to_be_visible()
         journal.get_by_label("Next entry").fill("Walks again.")

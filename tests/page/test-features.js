@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
-  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, Part, partsOf,
+  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, MENU_GROUPS, menuRows, Part, partsOf,
 } from "../../static/js/features.js";
 import { change, ignored, page, read } from "../../static/js/page-state.js";
 import { applyEvent, eventNames } from "../../static/js/store.js";
@@ -79,6 +79,7 @@ test("what a feature declares is there", async () => {
     assert.deepEqual(needs.filter((other) => !NAMES.includes(other)), [], name);
     const parts = [tabs, views, dialogs, panels, slots].flatMap((kind) => Object.values(kind));
     const shown = parts.flatMap((part) => ("show" in part ? [part.show] : []));
+    for (const { group = "page" } of menu) assert.ok(group in MENU_GROUPS, `${name}: ${group}`);
     const called = [...menu, ...runMenu, ...Object.values(keys)].flatMap(({ call }) => call ?? []);
     for (const source of [...shown, ...called, ...Object.values(whenSet)]) {
       assert.equal(typeof await imported(name, source), "function", `${name}: ${source}`);

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute
 
 from app.api.policy import WATCH, GuardedPage, policy
@@ -69,7 +69,7 @@ _NOT_IN_SLUG = re.compile(r"[^\w\- ]")
 
 
 def guide_routes(folder: Path) -> list[BaseRoute]:
-    """Return the route `/guide/{name}`.
+    """Return the routes `/guide/{name}`, and `/guide`, which leads to the first page.
 
     Args:
         folder: folder of the documentation, in Markdown.
@@ -83,7 +83,16 @@ def guide_routes(folder: Path) -> list[BaseRoute]:
             return problem(404, f"The guide has no page {name!r}; it has {names}.")
         return HTMLResponse(_page(folder, name))
 
-    return [GuardedPage("/guide/{name}", show, name="guide")]
+    @policy(access=WATCH)
+    def first(request: Request) -> Response:
+        del request
+        # Relative, so that it is valid behind a proxy that serves the app under a prefix.
+        return RedirectResponse(f"guide/{CONTENTS[0][1][0]}")
+
+    return [
+        GuardedPage("/guide", first, name="guide_start"),
+        GuardedPage("/guide/{name}", show, name="guide"),
+    ]
 
 
 @cache

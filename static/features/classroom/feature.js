@@ -15,10 +15,13 @@ const FirstLesson = () => html`
 /** @type {Partial<Feature>} */
 export default {
   menu: [
-    { title: "Lessons", order: 30, href: "#lessons" },
-    { title: "Open a room…", order: 31, for: "operator", dialog: "rooms", call: "lessons/list.js#askForRoom" },
+    { title: "Lessons", order: 30, group: "class", href: "#lessons" },
     {
-      title: () => (card.value ? "Hide the lesson" : "The first lesson"), order: 33,
+      title: "Open a room…", order: 31, group: "class", for: "operator", dialog: "rooms",
+      call: "lessons/list.js#askForRoom",
+    },
+    {
+      title: () => (card.value ? "Hide the lesson" : "The first lesson"), order: 33, group: "help",
       run: () => (card.peek() ? closeLesson : openLesson)(),
     },
   ],

@@ -3,7 +3,7 @@ import { announcement } from "../headline.js";
 import { computed, effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import {
-  Loaded, loaded, loadPart, menuRows, Part, partsOf, runRow, Slot, wantedDialogs, withStyle,
+  Loaded, loaded, loadPart, MENU_GROUPS, menuRows, Part, partsOf, runRow, Slot, wantedDialogs, withStyle,
 } from "../features.js";
 import { share } from "../actions.js";
 import { page } from "../page-state.js";
@@ -15,7 +15,7 @@ import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
 import { DropTarget } from "./dropping.js";
 import { html, Icon } from "./elements.js";
-import { toggleHelp } from "./keyboard.js";
+import { focusMenu, moveInMenu, toggleHelp } from "./keyboard.js";
 import { Panel, replacement, ThumbTabs } from "./panel.js";
 import { Stage } from "./stage.js";
 import { TimeBar } from "./time-bar.js";
@@ -160,45 +160,62 @@ const DepthChoice = () => html`
   </div>
 `;
 
-/** What is seldom wanted; on small screens also the views and the link. */
+/** Where a row is, if it is not everywhere: its class. */
+const [PHONE, WIDE] = /** @type {const} */ (["phone-only", "wide-only"]);
+
+/** The rows of the core's own; the views stand in the header where there is room. @type {() => ShownRow[]} */
+const ownRows = () => [
+  ...headerViews.value.map(([, title, href]) => ({ title, href, group: "views", where: PHONE })),
+  { title: "Copy a link to this", icon: "link", group: "share", order: 0, run: share },
+  {
+    title: `${isPanelHidden.value ? "Show" : "Hide"} the panel`, icon: "panel", group: "page", where: WIDE,
+    run: () => toggleHidden("panel"),
+  },
+  { title: `Theme: ${theme.value}`, icon: theme.value, group: "page", run: nextTheme, stays: true },
+  { title: "Keys and help", group: "help", order: 50, run: toggleHelp },
+];
+
+/** A row of the menu. `stays`: it is pressed several times. @typedef {MenuRow & {
+ *   feature?: string, where?: string, stays?: boolean,
+ * }} ShownRow */
+
+/** What is seldom wanted, in groups. */
 function Menu() {
-  /** Close it, before what was chosen moves the focus. @param {() => unknown} act */
-  const item = (act) => (/** @type {Event & { currentTarget: HTMLElement }} */ { currentTarget }) => {
-    currentTarget.closest("details")?.removeAttribute("open");
-    act();
-  };
+  const rows = [...ownRows(), ...menuRows.value.filter((row) => !row.for || isOperator.value)]
+    .sort((a, b) => (a.order ?? 0) - (b.order ?? 0));
   return html`
-    <details class="menu more-menu">
-      <summary class="quiet square" aria-label="More" title="More">⋯</summary>
-      <div class="menu-body">
-        ${headerViews.value.map(([, title, href]) => html`
-          <a class="phone-only" href=${href} onClick=${item(() => {})}>${title}</a>
+    <details class="menu more-menu" onToggle=${focusMenu} onKeyDown=${moveInMenu}>
+      <summary class="quiet square" aria-label="More" aria-haspopup="menu" title="More">⋯</summary>
+      <div class="menu-body" role="menu" aria-label="Menu">
+        ${Object.entries(MENU_GROUPS).map(([group, title]) => html`
+          <${Group} key=${group} title=${title} rows=${rows.filter((row) => (row.group ?? "page") === group)} />
         `)}
-        <button class="quiet" onClick=${item(share)}><${Icon} name="link" />Copy a link to this</button>
-        ${menuRows.value.filter((row) => !row.for || isOperator.value).map((row) => html`
-          <${Row} key=${row.order} row=${row} item=${item} />
-        `)}
-        <button class="quiet wide-only" onClick=${item(() => toggleHidden("panel"))}>
-          <${Icon} name="panel" />${isPanelHidden.value ? "Show" : "Hide"} the panel
-        </button>
-        <button class="quiet" onClick=${nextTheme} title="Light, dark, or the system's theme">
-          <${Icon} name=${theme.value} />Theme: ${theme.value}
-        </button>
-        <button class="quiet" onClick=${item(toggleHelp)}>Keys and help</button>
       </div>
     </details>
   `;
 }
 
-/**
- * A row that a feature has added.
- * @param {{ row: MenuRow & { feature: string }, item: (act: () => unknown) => (event: any) => void }} props
- */
-function Row({ row, item }) {
+/** @param {{ title: string, rows: ShownRow[] }} props */
+const Group = ({ title, rows }) => rows.length > 0 && html`
+  <div class=${`menu-group ${rows.every(({ where }) => where === PHONE) ? PHONE : ""}`} role="group"
+    aria-label=${title}>
+    <span class="menu-title" aria-hidden="true">${title}</span>
+    ${rows.map((row) => html`<${Row} row=${row} />`)}
+  </div>
+`;
+
+/** @param {{ row: ShownRow }} props */
+function Row({ row: { where = "", stays = false, ...row } }) {
   const title = typeof row.title === "function" ? row.title() : row.title;
-  if (row.href) return html`<a href=${row.href} onClick=${item(() => {})}>${title}</a>`;
-  const icon = row.icon && html`<${Icon} name=${row.icon} />`;
-  return html`<button class="quiet" onClick=${item(() => runRow(row))}>${icon}${title}</button>`;
+  /** Close the menu, before what was chosen moves the focus. */
+  const choose = (/** @type {Event & { currentTarget: HTMLElement }} */ { currentTarget }) => {
+    if (!stays) currentTarget.closest("details")?.removeAttribute("open");
+    if (!row.href) runRow({ feature: "", ...row });
+  };
+  const common = { role: "menuitem", tabIndex: -1, class: where, onClick: choose };
+  return row.href
+    ? html`<a ...${common} href=${row.href}>${title}</a>`
+    : html`<button ...${common}>${row.icon && html`<${Icon} name=${row.icon} />`}${title}</button>`;
 }
 
 function Connection() {

@@ -42,6 +42,14 @@ def test_links_to_a_part_of_a_page_find_it(shared: Callable[..., Api]) -> None:
             assert f'id="{anchor}"' in client.get(f"/guide/{other}").text, (name, other, anchor)
 
 
+def test_the_address_of_the_guide_leads_to_its_first_page_below_any_prefix(
+    shared: Callable[..., Api],
+) -> None:
+    answer = shared().client.get("/guide", follow_redirects=False)
+    assert (answer.status_code, answer.headers["location"]) == (307, "guide/page")
+    assert shared().client.get("/guide", follow_redirects=True).status_code == 200
+
+
 def test_an_unknown_page_is_refused_with_the_pages_that_there_are(
     shared: Callable[..., Api],
 ) -> None:
