@@ -1,22 +1,25 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
 import { useEffect } from "preact/hooks";
 import { form, mistakes, isReadOnly } from "../../js/form.js";
-import { metres, whole } from "../../js/format.js";
-import { agentOf, learns } from "../../js/settings.js";
+import { listed, metres, whole } from "../../js/format.js";
+import { mayStart } from "../../js/selectors.js";
+import { agentOf, kindOf, learns, PRACTICE, sliderOf } from "../../js/settings.js";
+import {
+  applyDraft, differences, discardDraft, discardUntried, triable, triedValue, tryValue, untried,
+} from "./draft.js";
 import {
   answer, error, evaluateSettings, followWhatIf, isComputing, isCurrent, isTooLong, mostSteps, seeds,
 } from "./what-if.js";
 import { messageOf } from "../../js/titles.js";
 import { DotStrip } from "../../js/components/dot-strip.js";
 import { html } from "../../js/components/elements.js";
-import { Restricted } from "../../js/components/fields.js";
-import { PracticeSettings } from "../../js/components/settings.js";
+import { closable, Restricted, SettingRow, Slider } from "../../js/components/fields.js";
 
-/** @import { WhatIfAnswer, WhatIfHalf } from "../../js/types.js" */
+/** @import { SettingOption, SettingValue, WhatIfAnswer, WhatIfHalf } from "../../js/types.js" */
 
 const HEADROOM = 1.06;
 
-/** It computes beside the race, and changes nothing on the stage. */
+/** It computes beside the race, and changes nothing on the stage, and nothing of the next run unless asked to. */
 export function WhatIf() {
   useEffect(followWhatIf, []);
   if (!form.value.lanes.some(learns)) {
@@ -25,10 +28,61 @@ export function WhatIf() {
   return html`
     <section class="what-if" aria-label="What if">
       <${Restricted} />
-      <${PracticeSettings} />
+      <fieldset class="settings" aria-label="Settings to try">
+        <div class="sliders">
+          ${Object.entries(triable.value).map(([field, setting]) => html`
+            <${Tried} key=${`${form.value.agent} ${field}`} field=${field} setting=${setting} />
+          `)}
+        </div>
+      </fieldset>
+      <${Draft} />
       <h3>${seeds.value} ideal robots: distance in 50 steps</h3>
       <${Comparison} />
     </section>
+  `;
+}
+
+/**
+ * A setting that is tried: with a slider, if it is a number.
+ * @param {{ field: string, setting: SettingOption }} props
+ */
+function Tried({ field, setting }) {
+  const ends = field === "steps" ? PRACTICE : kindOf(setting) === "number" ? sliderOf(setting) : null;
+  const rest = {
+    setting, value: triedValue(field), isOfForm: false,
+    onValue: (/** @type {SettingValue} */ value) => tryValue(field, value),
+  };
+  return closable(field, ends
+    ? html`<${Slider} field=${`tried-${field}`} ...${ends} ...${rest} />`
+    : html`<${SettingRow} name=${`tried-${field}`} ...${rest} />`);
+}
+
+/** What differs from the next run, and the ways to go on with it. */
+function Draft() {
+  const all = differences.value;
+  const base = mayStart.value ? "next run" : "before";
+  return html`
+    ${untried.value.length > 0 && html`
+      <div class="notice" role="status">
+        <p>The link also tries ${listed(untried.value)}, which has no effect.</p>
+        <button class="link" onClick=${discardUntried}>Dismiss</button>
+      </div>
+    `}
+    ${all.length > 0 && html`
+      <div class="draft" role="group" aria-label="Draft">
+        <p role="status">
+          ${mayStart.value ? "Not in the next run: " : "Yours alone: "}
+          ${all.map(({ field, title, value, next }, number) => html`
+            ${number > 0 && ", "}
+            <span key=${field}><b>${title} ${value}</b> <span class="dim">(${base} ${next})</span></span>
+          `)}
+        </p>
+        <div class="row">
+          ${mayStart.value && html`<button class="secondary compact" onClick=${applyDraft}>Use this</button>`}
+          <button class="secondary compact" onClick=${discardDraft}>Discard</button>
+        </div>
+      </div>
+    `}
   `;
 }
 

@@ -1,9 +1,10 @@
-// What-if: kinematic trials of the form's settings, beside trials of the defaults.
+// What-if: kinematic trials of the settings of the draft, beside trials of the defaults.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "../../js/api.js";
-import { form, isReadOnly, mistakes, trainingBody } from "../../js/form.js";
+import { isReadOnly, mistakes, trainingBody } from "../../js/form.js";
 import { limitsOf } from "../../js/settings.js";
 import { options, role } from "../../js/store.js";
+import { differences, draft, triedValue } from "./draft.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../../js/api.js" */
@@ -24,26 +25,30 @@ const IGNORED = new Set([
   "simulator", "world", "disturbances", "tolerance", "reward", "name", "seed", "evaluate_every", "pace",
 ]);
 
-/** Request body of a what-if: the form's practice, but for what the answer does not depend on. */
-export const whatIfBody = () =>
-  Object.fromEntries(Object.entries(trainingBody()).filter(([field]) => !IGNORED.has(field)));
+/** Request body of a what-if: the form's practice with the draft, but for what the answer does not depend on. */
+export function whatIfBody() {
+  const body = trainingBody();
+  const { steps = body.steps, ...tried } = draft.value;
+  const settings = { .../** @type {object} */ (body.settings), ...tried };
+  return Object.fromEntries(Object.entries({ ...body, steps, settings }).filter(([field]) => !IGNORED.has(field)));
+}
 
 const settings = computed(() => JSON.stringify(whatIfBody()));
 /** The most steps of practice that the server tries; null without a limit. */
 export const mostSteps = computed(() => limitsOf("what_if_steps").maximum);
-export const isTooLong = computed(() => mostSteps.value !== null && form.value.steps > mostSteps.value);
+export const isTooLong = computed(() => mostSteps.value !== null && triedValue("steps") > mostSteps.value);
 /** Number of seeds of an answer. */
 export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);
-/** Whether the answer is for the form's settings as they are. */
+/** Whether the answer is for the settings as they are. */
 export const isCurrent = computed(() => answer.value?.settings === settings.value);
 
 /** A form that follows the stage would ask from every page at once. */
-const canAsk = () => role.value !== null && !isReadOnly.value && !isTooLong.value &&
+const canAsk = () => role.value !== null && (!isReadOnly.value || differences.value.length > 0) && !isTooLong.value &&
   Object.keys(mistakes.value).length === 0;
 
 let hasMissed = false;
 
-/** Request an answer for the form's settings; one request at a time, the newest settings next. */
+/** Request an answer for the settings; one request at a time, the newest settings next. */
 export async function evaluateSettings() {
   if (isComputing.peek()) {
     hasMissed = true;
@@ -65,7 +70,7 @@ export async function evaluateSettings() {
 }
 
 /**
- * Request an answer now, unless the settings are read only, and each time the form has come to rest with others, until
+ * Request an answer now, unless they are those of the stage, and each time they have come to rest as others, until
  * the function that is returned is called.
  */
 export function followWhatIf() {

@@ -8,7 +8,7 @@ import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings,
-  mainSettings, PRACTICE_FIELDS, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
+  mainSettings, PRACTICE, PRACTICE_FIELDS, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import {
@@ -27,9 +27,6 @@ import { Disturbances, WorldPicker } from "./world.js";
 /** @import { Changed, Run, SettingOption, SettingValue } from "../types.js" */
 /** @import { ComponentChildren } from "preact" */
 /** @import { MainSetting } from "../settings.js" */
-
-/** Maximum of the slider of the practice, less than the server accepts: any other number can be typed. */
-const PRACTICE = { min: 50, max: 2000, step: 50 };
 
 /**
  * Settings of the next training and race: what those who try change, and for those who study all of them. A spectator
@@ -61,13 +58,6 @@ export function TrainSettings() {
     </fieldset>
   `;
 }
-
-/** The settings of the practice alone, as "What if" tries them. */
-export const PracticeSettings = () => html`
-  <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings of the practice">
-    <div class="sliders"><${LearnerSettings} /><${PracticeSteps} /></div>
-  </fieldset>
-`;
 
 /** Settings of the world and the robot: the worlds as pictures, and for those who study what happens, and the robot. */
 export const WorldSettings = () => html`

@@ -1,11 +1,14 @@
 // The request of a what-if: the form's practice, without what its ideal robots do not depend on.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { whatIfBody } from "../../../static/features/what_if/what-if.js";
 import { openForm, setField, setFields, trainingBody } from "../../../static/js/form.js";
 import { page } from "../../../static/js/page-state.js";
 import { options } from "../../../static/js/store.js";
+import { installOnly } from "../../page/features.js";
 import { OPTIONS } from "../../page/options.js";
+
+await installOnly("what_if");
+const { whatIfBody } = await import("../../../static/features/what_if/what-if.js");
 
 beforeEach(() => {
   options.value = OPTIONS;
