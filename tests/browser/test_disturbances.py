@@ -149,6 +149,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     branch = page.get_by_role("region", name="Disturb this race")
     expect(branch).to_contain_text(re.compile(r"From step [45]\d: as it was"))
     dashboard.moment.fill("1")
+    has_both_parts_while_it_plays(dashboard)
     dashboard.button("Pause the stage").click()
     expect(branch).to_contain_text(re.compile(r"From step [12]?\d: as it was"))
     step_number = step_of(branch)
@@ -188,6 +189,15 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     page.close()
 
     branches_by_a_pick(with_3d, branch)
+
+
+def has_both_parts_while_it_plays(dashboard: Dashboard) -> None:
+    """What can be disturbed stays as it is; a change would hold the picture."""
+    expect(dashboard.button("Pause the stage")).to_be_visible()
+    for part in ("In this race", "In the next one"):
+        expect(dashboard.page.get_by_role("heading", name=part)).to_be_visible()
+    branch = dashboard.page.get_by_role("region", name="Disturb this race")
+    expect(branch).to_contain_text("From the step shown: as it was")
 
 
 def goes_on_from_the_moment(dashboard: Dashboard, start: Locator) -> None:

@@ -49,15 +49,15 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
 
     # It is a draft: the next run has it once it is used, and a link and another tab keep it.
     draft = panel.get_by_role("group", name="Draft")
-    expect(draft).to_contain_text("Not in the next run: α 0.8 (next run 0.1)")
+    expect(draft).to_contain_text("Not in the next run: α 0.8 (next run 0.3)")
     train = dashboard.open_tab("Train")
-    expect(train.get_by_role("slider", name="Learning rate α")).to_have_value("0.1")
+    expect(train.get_by_role("slider", name="Learning rate α")).to_have_value("0.3")
     page.reload()
     panel = dashboard.open_tab("What if")
     expect(panel.get_by_role("slider", name="Learning rate α")).to_have_value("0.8")
     draft.get_by_role("button", name="Discard").click()
     expect(draft).to_have_count(0)
-    expect(panel.get_by_role("slider", name="Learning rate α")).to_have_value("0.1")
+    expect(panel.get_by_role("slider", name="Learning rate α")).to_have_value("0.3")
     panel.get_by_role("slider", name="Learning rate α").fill("0.8")
     assert dashboard.violations() == []
     draft.get_by_role("button", name="Use this").click()

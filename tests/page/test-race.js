@@ -5,7 +5,7 @@ import { headline, narrative } from "../../static/js/headline.js";
 import { clipped, isLoser, isTimedOut, shownTime, standings } from "../../static/js/race.js";
 import { stageIds } from "../../static/js/runs.js";
 import { distanceAt, timeSpent } from "../../static/js/narrative/moment.js";
-import { heldRace, raceInView, stepShown } from "../../static/js/on-stage.js";
+import { heldRace, isMoving, openRace, raceInView, stepShown } from "../../static/js/on-stage.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { flatParts, planningModelTitle } from "../../static/js/titles.js";
 import { makeRun, makeSceneLane, OPTIONS } from "./options.js";
@@ -252,14 +252,15 @@ test("a fall is told once it is shown, and the heading at the end", () => {
   assert.deepEqual([postureAt(8), postureAt(9), postureAt(50)], [[null, null], [7, null], [7, 35]]);
 });
 
-test("a race can be raced on while its replay is held", () => {
+test("a race can be raced on from the step that is shown, whether its picture plays or is held", () => {
   const lanes = [makeSceneLane({ step: 50, done: true }), makeSceneLane({ lane: 1, step: 12 })];
   showScene({ phase: "race", time_s: 1, lanes, playing: true });
   assert.deepEqual([heldRace.value, stepShown.value], [null, 12]);
+  assert.deepEqual([openRace.value?.id, isMoving.value], [RACE.id, true]);
   applyEvent("stage", { ...STAGE, run_id: RACE.id, phase: "showing", playing: false });
   assert.deepEqual([heldRace.value], [null], "its figures are not those of the moment yet");
   showScene({ phase: "race", time_s: 1, lanes, playing: false });
-  assert.equal(heldRace.value?.id, RACE.id);
+  assert.deepEqual([heldRace.value?.id, openRace.value?.id, isMoving.value], [RACE.id, RACE.id, false]);
   showScene({ ...AT_END, lanes: lanes.map((lane) => ({ ...lane, done: true })) });
   assert.deepEqual([heldRace.value?.id, stepShown.value], [RACE.id, null]);
 });

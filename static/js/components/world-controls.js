@@ -2,14 +2,14 @@
 // runs, and for a race that is held, which is raced on from there.
 import { useRef, useState } from "preact/hooks";
 import { disturb } from "../live-changes.js";
-import { branchRace, pending } from "../actions.js";
+import { branchRace, pending, setStage } from "../actions.js";
 import {
   chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, isSimulated, kindFor,
   kindNamed, legStates, nothingOf, pressed, withUnit,
 } from "../disturbances.js";
 import { listed } from "../format.js";
 import { azimuthsOf } from "../robots.js";
-import { heldRace, liveTraining, playbackName, stepShown } from "../on-stage.js";
+import { isMoving, liveTraining, openRace, playbackName, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
@@ -350,10 +350,9 @@ export function LiveWorld() {
   `;
 }
 
-// ---- a race that is held: it is disturbed, and raced on from there
+// ---- a race that has been computed: it is disturbed, and raced on from the step that is shown
 
-/** Shown while the replay of a race is held. */
-export const Branch = () => heldRace.value && html`<${BranchOf} key=${heldRace.value.id} race=${heldRace.value} />`;
+export const Branch = () => openRace.value && html`<${BranchOf} key=${openRace.value.id} race=${openRace.value} />`;
 
 /** @param {{ race: Run }} props */
 function BranchOf({ race }) {
@@ -367,14 +366,19 @@ function BranchOf({ race }) {
   /** @param {string[]} now */
   const words = (now) => {
     const pushes = chosen.some(({ kind }) => kindNamed(kind)?.lasts === false) ? ["a push"] : [];
-    return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
+    const all = [...now, ...pushes].join(", ") || "as it was";
+    // A number that counts on would be read aloud at each step.
+    return html`<b>From ${isMoving.value ? "the step shown" : `step ${from}`}:</b> ${all}`;
+  };
+  const choose = (/** @type {Disturbance} */ disturbance) => {
+    if (isMoving.peek()) setStage({ playing: false });
+    setChosen((all) => chosenWith(all, disturbance, before, config.robot));
   };
   const start = () => branchRace(race, from - 1, chosen);
   return html`
     <section class="branch" aria-label="Disturb this race">
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
-        onDisturb=${(/** @type {Disturbance} */ disturbance) =>
-          setChosen((all) => chosenWith(all, disturbance, before, config.robot))}>
+        onDisturb=${choose}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
           Race on from ${stepShown.value === null ? `step ${from}` : "here"}
         </button>

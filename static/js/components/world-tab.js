@@ -1,6 +1,10 @@
-// The tab of the world: what can be disturbed now, what has happened, and the world of the next run.
-import { heldRace, liveTraining, stepShown } from "../on-stage.js";
-import { isOperator } from "../selectors.js";
+// The tab of the world, in two parts that are always there: what happens in the run that is shown, and the world of the
+// next one.
+import {
+  isMoving, liveTraining, openRace, raceInView, shownRun, stepShown, work,
+} from "../on-stage.js";
+import { whole } from "../format.js";
+import { isActive, isOperator } from "../selectors.js";
 import { isClosed } from "../settings.js";
 import { isAway } from "../store.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
@@ -9,42 +13,56 @@ import { Restricted } from "./fields.js";
 import { WorldSettings } from "./settings.js";
 import { Branch, LiveWorld } from "./world-controls.js";
 
-/** What can be disturbed now comes before the world of the next run. */
 export function WorldTab() {
-  const canDisturb = isOperator.value && (liveTraining.value !== null || heldRace.value !== null);
+  const isPractice = liveTraining.value !== null || shownRun.value?.kind === "training";
   return html`
     <div class="world-tab">
       <${Restricted} />
-      ${canDisturb && html`<${FromNow} />`}
-      <${Happened} />
-      <${WorldSettings} />
-      ${isOperator.value && !canDisturb && !isClosed("disturb") && html`
-        <p class="dim fine">
-          Hold a race that has been computed, or start a training: then its robots can be disturbed here, or by a click
-          on a leg.
-        </p>
-      `}
+      <section class="world-part" aria-labelledby="world-of-this">
+        <h2 id="world-of-this">In this ${isPractice ? "practice" : "race"}</h2>
+        <${InThis} />
+        <${Happened} />
+      </section>
+      <section class="world-part" aria-labelledby="world-of-next">
+        <h2 id="world-of-next">In the next one</h2>
+        <p class="sentence acts">Acts from the start of the next practice and race.</p>
+        <${WorldSettings} />
+      </section>
     </div>
   `;
 }
 
-function FromNow() {
-  // At the end of a race nothing is left to walk from there.
-  const isFromPicture = liveTraining.value !== null || stepShown.value !== null;
-  const title = isFromPicture ? "From the moment shown" : "From the middle of the race";
+/** The controls of what is shown, or why it has none. */
+function InThis() {
+  const reason = reasonWithout();
+  if (reason) return html`<p class="dim fine">${reason}</p>`;
   return html`
-    <section aria-label=${title}>
-      <h3>${title}${isFromPicture && shownMoment()}</h3>
-      <fieldset class="closed" disabled=${isAway.value || isClosed("disturb")}>
-        ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
-      </fieldset>
-    </section>
+    <p class="sentence acts">${whereItActs()}</p>
+    <fieldset class="closed" disabled=${isAway.value || isClosed("disturb")}>
+      ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
+    </fieldset>
   `;
 }
 
-const shownMoment = () => (scale.value ? `, ${positionInWords(scale.value, scale.value.picture)}` : "");
+/** Why nothing can be made to happen in what is shown; empty where it can. */
+function reasonWithout() {
+  const race = raceInView.value;
+  if (!isOperator.value) return "Only operators disturb what is on the stage.";
+  if (liveTraining.value || openRace.value) return "";
+  if (!shownRun.value) return "Nothing is shown yet. Then its robots are disturbed here, or by a click on a leg.";
+  if (race && (work.value || isActive(race))) return "It is being computed. Then it can be raced on from each step.";
+  return race ? "It ended early: it cannot be raced on." : "It has ended: nothing can happen in it any more.";
+}
 
-/** What happened in the run on stage so far, each with a way to its moment. */
+/** From which step the controls of what is shown act. */
+function whereItActs() {
+  if (liveTraining.value) return `Acts at once, from step ${whole(liveTraining.value.progress.done + 1)}.`;
+  if (isMoving.value) return "Acts from the step that is shown, as a new race. The first change holds this one there.";
+  const isAtEnd = stepShown.value === null;
+  return `Acts from ${isAtEnd ? "the middle" : "the step that is shown"}, as a new race. This one stays as it is.`;
+}
+
+/** What happened in the run that is shown so far, each with a way to its moment. */
 function Happened() {
   const all = marks.value.filter(({ kind }) => ["disturbance", "fall", "change"].includes(kind));
   const scaleNow = scale.value;

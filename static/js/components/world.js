@@ -59,7 +59,7 @@ const worldChoices = () => served().worlds.filter(({ name }) => isAllowed("world
 export const WorldPicker = () => html`
   <fieldset role="radiogroup" disabled=${isClosed("world")} aria-invalid=${wrong.value.world ? "true" : undefined}
     aria-describedby=${wrong.value.world ? "mistake-world help-world" : "help-world"}>
-    <legend><h2>World</h2></legend>
+    <legend><h3>World</h3></legend>
     <div class="gait-row">
       ${worldChoices().map(({ name, title, disturbances }, number) => html`
         <label class="gait" key=${name}>
@@ -100,7 +100,7 @@ export function Disturbances() {
   return html`
     <fieldset class="disturbances" disabled=${isClosed("disturb")} id="field-disturb" tabindex="-1"
       aria-describedby="help-disturb">
-      <legend><h2>Disturbances</h2></legend>
+      <legend><h3>Disturbances</h3></legend>
       <p class="sentence" id="help-disturb">
         In the race, after practice in the world above; in the practice, if there is no race.
       </p>
