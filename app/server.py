@@ -83,6 +83,7 @@ from hexapods.version import __version__
 
 _logger = logging.getLogger(__name__)
 GRACE_S = 3
+_PURGE_EVERY_S = 300
 SWITCH_S = 0.001
 """Python's switch interval [s]: shorter than its 5 ms, for the event loop's latency."""
 GC_OBJECTS = 10_000
@@ -274,12 +275,24 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         await services.features.open(opened)
         services.jobs.open()
         await asyncio.to_thread(_resume_interrupted, services)
+        purging = asyncio.create_task(_purge_deleted(services.jobs))
         try:
             yield
         finally:
+            purging.cancel()
             services.bus.close()
             await _end_long_requests(app)
             await asyncio.to_thread(services.jobs.close)
+
+
+async def _purge_deleted(jobs: Jobs) -> None:
+    """Delete for good, every few minutes, the runs that can be restored no more."""
+    while True:
+        try:
+            await asyncio.to_thread(jobs.purge)
+        except HexapodError as error:
+            _logger.warning("Deleted runs stay on the disk for now: %s", error)
+        await asyncio.sleep(_PURGE_EVERY_S)
 
 
 def _resume_interrupted(services: Services) -> None:

@@ -1,5 +1,6 @@
 """Response models that several routes share; see `app.answer`."""
 
+from datetime import datetime
 from typing import Annotated
 
 from pydantic import Field
@@ -38,10 +39,16 @@ class KeptRun(Answer):
 
 
 class DeletedView(Answer):
-    """Ids of the runs that were deleted, and those that could not be."""
+    """Ids of the runs that were deleted, and those that could not be.
+
+    Attributes:
+        restorable_until: until when `POST /runs/{run_id}/restore` brings them all back; null where
+            one is gone for good.
+    """
 
     deleted: list[str]
     kept: list[KeptRun]
+    restorable_until: datetime | None
 
 
 class SeedsView(Answer):

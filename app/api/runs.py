@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable, Iterable
+from datetime import datetime
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
@@ -123,21 +124,30 @@ def list_runs(
 @router.delete("", summary="Delete runs that have ended")
 @policy(access=OWN_RUNS)
 def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[DeletedView]:
-    """Delete each run that can be deleted; the answer names the others, and why they are kept."""
-    return RecordResponse(delete_each(services, ids))
+    """Delete each run that can be deleted; the answer names the others, and why they are kept.
+
+    What was deleted can be restored for an hour, unless the disk is full.
+    """
+    return RecordResponse(delete_each(ids, services.jobs.trash))
 
 
-def delete_each(services: Services, ids: Iterable[str]) -> DeletedView:
-    """Delete each run that can be deleted, in this order; return what was deleted and kept."""
-    deleted, kept_runs = [], []
+def delete_each(ids: Iterable[str], delete: Callable[[str], datetime | None]) -> DeletedView:
+    """Delete each run that can be deleted, in this order; return what was deleted and kept.
+
+    Args:
+        ids: of the runs.
+        delete: deletes a run, and returns until when it can be restored; None if it cannot.
+    """
+    deleted: dict[str, datetime | None] = {}
+    kept_runs = []
     for run_id in dict.fromkeys(ids):
         try:
-            services.jobs.delete(run_id)
+            deleted[run_id] = delete(run_id)
         except (NotFound, Conflict) as error:
             kept_runs.append(KeptRun(id=run_id, reason=str(error)))
-        else:
-            deleted.append(run_id)
-    return DeletedView(deleted=deleted, kept=kept_runs)
+    times = [time for time in deleted.values() if time is not None]
+    until = min(times) if times and len(times) == len(deleted) else None
+    return DeletedView(deleted=[*deleted], kept=kept_runs, restorable_until=until)
 
 
 @router.get(
@@ -177,6 +187,16 @@ def annotate_run(
 ) -> RecordResponse[AnyRunView]:
     """Change the name, tags or notes of a run, in any state; each is replaced as a whole."""
     return RecordResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
+
+
+@router.post("/{run_id}/restore", summary="Restore a run that was deleted")
+@policy(access=OWN_RUNS)
+def restore_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[ListedRunView]:
+    """Bring back a run that was deleted within the last hour, as it was; one that is there stays.
+
+    404 is the answer where it is too late, or where a stored robot of it was deleted too.
+    """
+    return RecordResponse(services.jobs.view(services.jobs.restore(run_id)))
 
 
 @router.post(
@@ -240,7 +260,7 @@ def run_routes(
     @policy(access=changed_by)
     def delete_run(services: ServicesDep, run_id: RunPath) -> None:
         find_any(services, kind, run_id)
-        services.jobs.delete(run_id)
+        services.jobs.trash(run_id)
 
     for verb, summary in _VERBS.items():
         access = changed_by if verb == "stop" else OPERATOR

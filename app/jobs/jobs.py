@@ -4,6 +4,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from app.events.bus import EventBus
@@ -16,7 +17,14 @@ from app.jobs.submissions import Start
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.jobs.tasks import resumed_runs
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
+from app.storage.errors import (
+    Busy,
+    Conflict,
+    NotAnswering,
+    NotFound,
+    StorageFailed,
+    StorageFull,
+)
 from app.storage.recordings import Recordings
 from app.storage.run import (
     ANNOTATIONS,
@@ -47,6 +55,8 @@ MAX_PENDING_CHANGES = 8
 """Maximum number of changes that wait for acknowledgement at once; each blocks a thread."""
 MAX_CHANGES = 2_000
 """Maximum number of live changes of a run; each of its events has all of them."""
+RESTORABLE = timedelta(hours=1)
+"""For how long a run that was deleted can be restored."""
 _ACKNOWLEDGE_S = 5.0
 _KILL_S = 2.0
 _EXIT_S = 10.0
@@ -341,8 +351,51 @@ class Jobs:
             self._publish(run)
         return run
 
+    def trash(self, run_id: str) -> datetime | None:
+        """Delete a run that has ended, so that it can be restored for a while.
+
+        Returns:
+            until when; None if it is gone at once, to make room on the disk.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it has not ended, or a queued race needs its table.
+        """
+        try:
+            self._store.check_disk_space()
+        except StorageFull:
+            self.delete(run_id)
+            self._store.purge(datetime.now(UTC))
+            return None
+        self._await_process(run_id)
+        deleted_at = datetime.now(UTC)
+        with self._changed:
+            self._check_needed_by_none(self._store.find(run_id))
+            self._store.trash(run_id, deleted_at)
+        self._forget(run_id)
+        return deleted_at + RESTORABLE
+
+    def restore(self, run_id: str) -> AnyRun:
+        """Bring back a run that was deleted lately, and return it; one that is there stays.
+
+        Raises:
+            NotFound: if there is no such run, or it was deleted too long ago.
+        """
+        try:
+            with self._changed:
+                run = self._store.restore(run_id, datetime.now(UTC) - RESTORABLE)
+        except NotFound as error:
+            hours = RESTORABLE // timedelta(hours=1)
+            raise NotFound(f"{error}; what was deleted can be restored for {hours} h") from error
+        self._bus.publish_run(run)
+        return run
+
+    def purge(self) -> int:
+        """Delete for good what can be restored no more; return the number of runs."""
+        return self._store.purge(datetime.now(UTC) - RESTORABLE)
+
     def delete(self, run_id: str) -> None:
-        """Delete a run that has ended.
+        """Delete a run that has ended, at once and for good.
 
         Raises:
             NotFound: if there is no such run.
@@ -352,6 +405,10 @@ class Jobs:
         with self._changed:
             self._check_needed_by_none(self._store.find(run_id))
             self._store.delete(run_id)
+        self._forget(run_id)
+
+    def _forget(self, run_id: str) -> None:
+        """Drop what memory has of a run that was deleted, and tell of it."""
         self._recordings.discard(run_id)
         self._bus.publish("run-deleted", DeletedRun(id=run_id), run_id)
 

@@ -22,12 +22,12 @@ import { features, kindOf } from "./features.js";
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
-  isAway, markGone, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
+  isAway, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Annotations, DamagedRun, LaneConfig, Run } from "./types.js" */
+/** @import { Annotations, LaneConfig, Run } from "./types.js" */
 /** @import { RunConfig, Stage, Verb } from "./types.js" */
 
 /** Body of PUT /stage. @typedef {Partial<Stage> & { time_s?: number, stay?: boolean }} StageChanges */
@@ -296,13 +296,6 @@ export const showOnStage = (run) =>
  */
 export const resumeRun = (run) =>
   attempt(run.id, () => adopt(() => api.command(run, "resume")));
-
-/** @param {Run | DamagedRun} run */
-export const deleteRun = (run) =>
-  attempt(run.id, async () => {
-    await api.deleteRun(run);
-    markGone(run.id);
-  });
 
 /**
  * Start a run with the settings of another, and show it.

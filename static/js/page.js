@@ -183,18 +183,21 @@ export const turnedByHand = signal(0);
 
 // ---- texts that are copied
 
-/** The message that is shown for a few seconds. @type {Signal<string | null>} */
+/** What can be done about a message. @typedef {{ label: string, run: () => unknown }} ToastAction */
+/** The message that is shown for a few seconds. @type {Signal<{ words: string, action?: ToastAction } | null>} */
 export const toastMessage = signal(null);
 
 const TOAST_MS = 4000;
+/** Of a message with an action: to be read, and reached by keys. */
+const LONG_TOAST_MS = 12_000;
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let toastTimer;
 
-/** @param {string} message */
-export function toast(message) {
-  toastMessage.value = message;
+/** @param {string} words @param {ToastAction} [action] */
+export function toast(words, action) {
+  toastMessage.value = { words, action };
   clearTimeout(toastTimer);
-  toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);
+  toastTimer = setTimeout(() => (toastMessage.value = null), action ? LONG_TOAST_MS : TOAST_MS);
 }
 
 /**

@@ -2,11 +2,12 @@
 import { computed } from "@preact/signals";
 import { attempt } from "./actions.js";
 import * as api from "./api.js";
+import { deleteRuns } from "./deletions.js";
 import { listed } from "./format.js";
 import { page } from "./page-state.js";
 import { listedRuns } from "./run-list.js";
 import { isActive } from "./selectors.js";
-import { markGone, requestRun, served } from "./store.js";
+import { requestRun, served } from "./store.js";
 
 /** @import { DamagedRun, Run } from "./types.js" */
 
@@ -49,13 +50,12 @@ export const deletable = computed(() => selected.value.filter((run) => "damaged"
 export const deleteSelected = () =>
   attempt("selection", async () => {
     const reasons = [];
-    const all = deletable.value.map(({ id }) => id);
+    const all = deletable.value;
     const [, most] = served().limits.run_ids;
     for (let at = 0; at < all.length; at += most ?? all.length) {
-      const { deleted, kept: refused } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
-      deleted.forEach(markGone);
+      const { deleted, reasons: more } = await deleteRuns(all.slice(at, at + (most ?? all.length)));
       select([...ids.value].filter((id) => !deleted.includes(id)));
-      reasons.push(...refused.map(({ reason }) => reason));
+      reasons.push(...more);
     }
     if (reasons.length) throw new api.RequestError(`Not deleted: ${listed(reasons)}.`);
   });

@@ -1,5 +1,6 @@
 """The resource `runs`: runs of every kind, listed, filtered, searched and found by id."""
 
+from datetime import UTC, datetime
 from typing import Any
 
 from tests.api.calls import Api, refused
@@ -128,6 +129,38 @@ def test_several_runs_are_deleted(api: Api) -> None:
     refused(api.call("DELETE", "/runs"), 422, "id is missing", "the id of a run")
     many = "&".join("id=a" for _ in range(101))
     refused(api.call("DELETE", f"/runs?{many}"), 422, "up to 100 of them")
+
+
+def test_a_run_that_was_deleted_is_nowhere_and_comes_back_as_it_was(api: Api) -> None:
+    run = api.finished(api.train(name="Heron, deleted", steps=20, evaluate_every=10))
+    curve = f"/trainings/{run['id']}/curve"
+    before = [api.call("GET", path).json() for path in (f"/runs/{run['id']}", curve)]
+    assert api.call("DELETE", f"/trainings/{run['id']}").status_code == 204
+    for path in (f"/runs/{run['id']}", curve, f"/trainings/{run['id']}"):
+        refused(api.call("GET", path), 404, run["id"])
+    for path in ("replay", "replay/scene", "code", "page", "archive"):
+        refused(api.call("GET", f"/runs/{run['id']}/{path}"), 404, run["id"])
+    assert api.call("GET", f"/runs/curves?id={run['id']}").json() == {"curves": []}
+    assert run["id"] not in [item["id"] for item in api.call("GET", "/runs").json()["items"]]
+    refused(api.call("POST", f"/runs/{run['id']}/again"), 404, run["id"])
+    refused(api.call("DELETE", f"/trainings/{run['id']}"), 404, run["id"])
+
+    restored = api.call("POST", f"/runs/{run['id']}/restore")
+    assert (restored.status_code, restored.json()) == (200, before[0])
+    assert [api.call("GET", path).json() for path in (f"/runs/{run['id']}", curve)] == before
+    assert api.call("GET", f"/runs/{run['id']}/replay/scene").status_code == 200
+    again = api.call("POST", f"/runs/{run['id']}/restore")
+    assert (again.status_code, again.json()) == (200, before[0]), "it is there already"
+
+
+def test_what_is_gone_for_good_is_told(api: Api) -> None:
+    refused(api.call("POST", "/runs/none/restore"), 404, "none", "can be restored for 1 h")
+    run = api.finished(api.train(name="Heron, too late", steps=5, evaluate_every=0))
+    answer = api.call("DELETE", f"/runs?id={run['id']}").json()
+    assert answer["restorable_until"] > run["ended_at"]
+    app: Any = api.client.app
+    app.state.services.store.purge(datetime.now(UTC))
+    refused(api.call("POST", f"/runs/{run['id']}/restore"), 404, run["id"], "restored for 1 h")
 
 
 def test_a_repeated_start_of_a_copy_returns_it_although_the_original_is_gone(api: Api) -> None:

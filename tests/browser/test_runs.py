@@ -195,8 +195,23 @@ def test_several_runs_are_tagged_and_deleted(dashboard: Dashboard, walks: Servin
     expect(rows).to_have_count(2)
     page.set_viewport_size({"width": 1280, "height": 800})
     dashboard.button("Delete 2").click()
-    dashboard.button("Delete 2 runs for good?").click()
     expect(page.get_by_text("No run matches these filters.")).to_be_visible()
+    # They come back, after a reload of the page too, with the tags that they had.
+    page.reload()
+    deleted = page.get_by_role("list", name="Deleted")
+    expect(deleted).to_contain_text(
+        re.compile(r"Deleted 2 runs\. It can be restored until \d\d:\d\d")
+    )
+    assert dashboard.violations() == []
+    deleted.get_by_role("button", name="Undo").click()
+    expect(names).to_have_text(["Walk 10", "Walk 11"])
+    expect(deleted).to_have_count(0)
+    expect(page.get_by_text("Restored 2 runs.")).to_be_visible()
+    rows.get_by_label("More for this training").first.click()
+    rows.get_by_role("button", name="Delete").click()
+    expect(names).to_have_text(["Walk 11"])
+    page.get_by_role("status").get_by_role("button", name="Undo").click()
+    expect(names).to_have_text(["Walk 10", "Walk 11"])
     assert dashboard.violations() == []
 
 

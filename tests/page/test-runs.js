@@ -112,7 +112,8 @@ const answerBy = (answer) => {
 };
 
 test("what is deleted goes, and what is kept is told with its reason", async () => {
-  answerBy(() => [200, { deleted: [TRAINING.id], kept: [{ id: UNKNOWN.id, reason: "a race waits for it" }] }]);
+  const kept = [{ id: UNKNOWN.id, reason: "a race waits for it" }];
+  answerBy(() => [200, { deleted: [TRAINING.id], kept, restorable_until: null }]);
   setSelected(TRAINING.id, true);
   setSelected(UNKNOWN.id, true);
   await deleteSelected();

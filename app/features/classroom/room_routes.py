@@ -303,7 +303,9 @@ def delete_room(
     were deleted, and why others were kept.
     """
     room = services.of(Rooms).ended(code)
-    deleted = delete_each(services, services.of(Rooms).runs_in(room.code) if runs else [])
+    run_ids = services.of(Rooms).runs_in(room.code) if runs else []
+    # For good: they are what a class has done.
+    deleted = delete_each(run_ids, services.jobs.delete)
     services.of(Rooms).delete(code)
     return RecordResponse(deleted)
 

@@ -141,7 +141,9 @@ class RoomRows:
         """
         # Ids of what-ifs do not sort by time; those of runs do, also of one moment.
         order = ROOM_RUNS.c.created_at, ROOM_RUNS.c.run_id
-        query = select(RUNS.c.id).where(RUNS.c.id.in_(select(ROOM_RUNS.c.run_id)))
+        query = select(RUNS.c.id).where(
+            RUNS.c.id.in_(select(ROOM_RUNS.c.run_id)), RUNS.c.deleted_at.is_(None)
+        )
         stored = self._database.read(lambda connection: set(connection.scalars(query)))
         linked = self._read(ROOM_RUNS, RoomRun, decode, *order)
         return [run for run in linked if run.answer is not None or run.run_id in stored]

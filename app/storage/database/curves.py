@@ -7,7 +7,7 @@ from sqlalchemy import Connection, delete, func, insert, select
 
 from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows, fetch_run_row
-from app.storage.database.schema import EVALUATIONS
+from app.storage.database.schema import EVALUATIONS, RUNS
 
 _ROWS_AT_ONCE = 10_000
 
@@ -74,6 +74,7 @@ class Curves:
             most: points of a curve at most, at even distances; the newest is one of them.
         """
         run_id, step = EVALUATIONS.c.run_id, EVALUATIONS.c.step
+        deleted = select(RUNS.c.id).where(RUNS.c.deleted_at.is_not(None))
         numbered = (
             select(
                 run_id,
@@ -82,7 +83,7 @@ class Curves:
                 func.row_number().over(partition_by=run_id, order_by=step).label("number"),
                 func.count().over(partition_by=run_id).label("total"),
             )
-            .where(run_id.in_(run_ids))
+            .where(run_id.in_(run_ids), run_id.not_in(deleted))
             .subquery()
         )
         from_last = numbered.c.total - numbered.c.number

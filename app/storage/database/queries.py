@@ -62,9 +62,13 @@ RAW_RUN = tuple(
 """Undecoded columns of a run, for SELECT and RETURNING; `rows.try_decode_run` decodes them."""
 
 
+NOT_DELETED = RUNS.c.deleted_at.is_(None)
+"""Condition that a run was not deleted; one that was is in the table while it can be restored."""
+
+
 def select_runs() -> Select[Any]:
-    """Return a SELECT of the undecoded rows of runs."""
-    return select(*RAW_RUN)
+    """Return a SELECT of the undecoded rows of runs, without those that were deleted."""
+    return select(*RAW_RUN).where(NOT_DELETED)
 
 
 _RUN = select_runs().where(RUNS.c.id == bindparam("run_id"))

@@ -384,6 +384,9 @@ class RobotStore:
         for noun, columns in self.users.items():
             named = (cast(column, String).contains(robot_id) for column in columns)
             query = select(func.count()).select_from(columns[0].table).where(or_(*named))
+            if columns[0].table is RUNS:
+                # One that is restored later is refused without its robot.
+                query = query.where(RUNS.c.deleted_at.is_(None))
             counts[noun] = int(connection.execute(query).scalar_one())
         return {noun: count for noun, count in counts.items() if count}
 

@@ -54,12 +54,14 @@ RUNS = Table(
     Column("created_at", UtcTime, nullable=False),
     Column("started_at", UtcTime),
     Column("ended_at", UtcTime),
+    # When it was deleted, while it can still be restored; all queries of runs leave it out then.
+    Column("deleted_at", UtcTime),
     Index("ix_runs_kind_id", "kind", "id"),
     Index("ix_runs_kind_state_id", "kind", "state", "id"),
     Index("ix_runs_state_id", "state", "id"),
 )
 
-NON_FIELD_COLUMNS = (RUNS.c.distance_m, RUNS.c.is_imported)
+NON_FIELD_COLUMNS = (RUNS.c.distance_m, RUNS.c.is_imported, RUNS.c.deleted_at)
 """Columns that are no fields of a run."""
 
 EVALUATIONS = Table(

@@ -32,6 +32,7 @@ from app.storage.database.keys import Keys
 from app.storage.database.listing import Listing, fetch_page
 from app.storage.database.progress import ProgressCache
 from app.storage.database.queries import (
+    NOT_DELETED,
     RAW_RUN,
     Row,
     fetch_rows,
@@ -276,7 +277,7 @@ class RunStore:
 
     def counts(self) -> Mapping[State, int]:
         """Return the number of runs by state, for states that have any."""
-        query = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
+        query = select(RUNS.c.state, func.count()).where(NOT_DELETED).group_by(RUNS.c.state)
         rows = self.database.read(lambda connection: connection.execute(query).all())
         return {state: count for state, count in rows}  # noqa: C416 - as a dict of plain types
 
@@ -352,7 +353,7 @@ class RunStore:
             self.database.write(work)
 
     def delete(self, run_id: str) -> None:
-        """Delete an ended run with its curve, artifacts and other data.
+        """Delete an ended run with its curve, artifacts and other data, at once.
 
         Raises:
             NotFound: if there is no such run.
@@ -360,10 +361,7 @@ class RunStore:
         """
 
         def work(connection: Connection) -> Sequence[str]:
-            row = fetch_run_row(connection, run_id, for_update=True)
-            state = row["state"]
-            if state in NOT_ENDED:
-                raise Conflict(f"{row['kind']} {run_id} is {state}; stop it first", state)
+            _check_ended(fetch_run_row(connection, run_id, for_update=True))
             is_this_run = has_public_id(connection, run_id)
             names = self._artifacts.file_names(connection, is_this_run)
             connection.execute(delete(RUNS).where(is_this_run))
@@ -371,6 +369,62 @@ class RunStore:
 
         self.files.remove(*self.database.write(work))
         self._progress.drop(run_id)
+
+    def trash(self, run_id: str, deleted_at: datetime) -> None:
+        """Delete an ended run so that it can be restored: all is kept, and nothing finds it.
+
+        Args:
+            run_id: id of the run.
+            deleted_at: the time, for `purge`.
+
+        Raises:
+            NotFound: if there is no such run.
+            Conflict: if it has not ended.
+        """
+
+        def work(connection: Connection) -> None:
+            _check_ended(fetch_run_row(connection, run_id, for_update=True))
+            is_this_run = has_public_id(connection, run_id)
+            connection.execute(update(RUNS).where(is_this_run).values(deleted_at=deleted_at))
+
+        self.database.write(work)
+        self._progress.drop(run_id)
+
+    def restore(self, run_id: str, deleted_since: datetime) -> AnyRun:
+        """Bring a run back that `trash` has deleted, and return it; one that is there stays.
+
+        Args:
+            run_id: id of the run.
+            deleted_since: a run that was deleted before stays deleted.
+
+        Raises:
+            NotFound: if there is no such run (any more), or a stored robot of it was deleted.
+        """
+
+        def work(connection: Connection) -> Row:
+            is_this_run = has_public_id(connection, run_id)
+            is_restorable = RUNS.c.deleted_at >= deleted_since
+            back = update(RUNS).where(is_this_run, is_restorable).values(deleted_at=None)
+            connection.execute(back)
+            row = fetch_run_row(connection, run_id)
+            run = self._try_decode(row, {})
+            if isinstance(run, Run):
+                self.robots.check(connection, robots_of(run.config))
+            return row
+
+        return self._try_decode(self.database.write(work), {})
+
+    def purge(self, deleted_before: datetime) -> int:
+        """Delete the runs for good that `trash` has deleted before a time; return their number."""
+
+        def work(connection: Connection) -> tuple[int, Sequence[str]]:
+            is_old = RUNS.c.deleted_at < deleted_before
+            names = self._artifacts.file_names(connection, is_old)
+            return connection.execute(delete(RUNS).where(is_old)).rowcount, names
+
+        number, names = self.database.write(work)
+        self.files.remove(*names)
+        return number
 
     def put_artifact(
         self,
@@ -466,6 +520,16 @@ class RunStore:
     def _invalidate_progress(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:
             self._progress.drop(run_id)
+
+
+def _check_ended(row: Row) -> None:
+    """Check that a run has ended, by its row.
+
+    Raises:
+        Conflict: if it has not.
+    """
+    if row["state"] in NOT_ENDED:
+        raise Conflict(f"{row['kind']} {row['id']} is {row['state']}; stop it first", row["state"])
 
 
 def _interrupted(from_states: Collection[State], error: str) -> Update:

@@ -57,7 +57,7 @@ function Whole() {
       <${Operator} />
     </main>
     <p class="sr-only" role="status">${announcement}</p>
-    <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
+    <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value.words}</p>`}</div>
   `;
 }
 

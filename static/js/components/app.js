@@ -234,6 +234,18 @@ function Connection() {
 }
 
 /** A message that disappears by itself. */
-const Toast = () => html`
-  <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
-`;
+function Toast() {
+  const { words, action } = toastMessage.value ?? {};
+  return html`
+    <div class="toast" role="status">
+      ${words && html`
+        <p>
+          ${words}
+          ${action && html`<button class="link" onClick=${() => { toastMessage.value = null; action.run(); }}>
+            ${action.label}
+          </button>`}
+        </p>
+      `}
+    </div>
+  `;
+}

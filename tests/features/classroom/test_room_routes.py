@@ -507,7 +507,8 @@ def test_a_room_that_has_ended_can_be_deleted(school: Class, runs: bool) -> None
     assert next(room["state"] for room in listed if room["code"] == code) == "ended"
     answer = school.teacher.call("DELETE", path, params={"runs": runs})
     assert answer.status_code == 200
-    assert answer.json() == {"deleted": [race["id"], training] if runs else [], "kept": []}
+    gone = [race["id"], training] if runs else []
+    assert answer.json() == {"deleted": gone, "kept": [], "restorable_until": None}
     refused(school.teacher.call("GET", path), 404)
     refused(pupil.call("POST", f"{path}/participants"), 404)
     # What stays is an ordinary run, which all may see.

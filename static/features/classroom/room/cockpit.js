@@ -36,7 +36,7 @@ export function Cockpit() {
       <${Ways} classroom=${classroom} />
     </main>
     <${Code} classroom=${classroom} />
-    <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
+    <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value.words}</p>`}</div>
   `;
 }
 

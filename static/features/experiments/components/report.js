@@ -1,5 +1,5 @@
 // The report of one experiment. It fills while trials end.
-import { useMemo, useState } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import { pending, runAgain } from "../../../js/actions.js";
 import { setFormOf } from "../form.js";
 import { forgetPreset } from "../presets.js";
@@ -191,15 +191,9 @@ const Menu = ({ title, id, label, children }) => html`
 `;
 
 /** @param {{ run: Run }} props */
-function DeleteButton({ run }) {
-  const [isSure, setSure] = useState(false);
-  const onClick = () => (isSure ? deleteExperiment(run) : setSure(true));
-  return html`
-    <button class="bad" disabled=${pending.value[run.id]} onBlur=${() => setSure(false)} onClick=${onClick}>
-      ${isSure ? "Delete for good?" : "Delete"}
-    </button>
-  `;
-}
+const DeleteButton = ({ run }) => html`
+  <button class="bad" disabled=${pending.value[run.id]} onClick=${() => deleteExperiment(run)}>Delete</button>
+`;
 
 /** @param {Run} run */
 const hasReport = (run) => Boolean(run.result?.files?.includes("report.html"));

@@ -1,6 +1,7 @@
 // The menu of a run: all that can be done with it, and its files.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { copySettings, deleteRun, pending, runAgain } from "../../actions.js";
+import { copySettings, pending, runAgain } from "../../actions.js";
+import { deleteRun } from "../../deletions.js";
 import { fillersOf, kindOf, rowsOfRuns, runRow, Slot } from "../../features.js";
 import { downloads } from "../../files.js";
 import { addressOf } from "../../page-state.js";
@@ -99,11 +100,6 @@ function Downloads({ run }) {
 }
 
 /** @param {{ run: AnyRun }} props */
-export function DeleteButton({ run }) {
-  const [isSure, setSure] = useState(false);
-  return html`
-    <button class="bad" disabled=${pending.value[run.id]} onClick=${() => (isSure ? deleteRun(run) : setSure(true))}>
-      ${isSure ? "Delete for good?" : "Delete"}
-    </button>
-  `;
-}
+export const DeleteButton = ({ run }) => html`
+  <button class="bad" disabled=${pending.value[run.id]} onClick=${() => deleteRun(run)}>Delete</button>
+`;

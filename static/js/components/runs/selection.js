@@ -1,7 +1,6 @@
 // What can be done with all runs that are selected; on a phone a bar at the thumb leads there.
 import { useState } from "preact/hooks";
 import { pending } from "../../actions.js";
-import { count } from "../../format.js";
 import { openDetails } from "../../run-details.js";
 import { clearSelection, deletable, deleteSelected, selected, tagSelected } from "../../run-selection.js";
 import { isOperator } from "../../selectors.js";
@@ -38,19 +37,11 @@ function TagThem() {
   `;
 }
 
-function DeleteThem() {
-  const { length } = deletable.value;
-  const ids = deletable.value.map(({ id }) => id).join();
-  // The runs that were asked about: another selection is asked about again.
-  const [sureOf, setSureOf] = useState("");
-  const isSure = sureOf === ids;
-  return html`
-    <button class="secondary compact bad" disabled=${pending.value.selection}
-      onClick=${() => (isSure ? deleteSelected() : setSureOf(ids))}>
-      ${isSure ? `Delete ${count(length, "run")} for good?` : `Delete ${length}`}
-    </button>
-  `;
-}
+const DeleteThem = () => html`
+  <button class="secondary compact bad" disabled=${pending.value.selection} onClick=${deleteSelected}>
+    Delete ${deletable.value.length}
+  </button>
+`;
 
 /** Leads to what can be done with the selection. */
 export function SelectionBar() {
