@@ -126,9 +126,6 @@ export const partsOf = (kind) => Object.fromEntries(features.value.flatMap(({ na
 export const fillersOf = (slot) => features.value.flatMap(({ name: feature, slots = {} }) =>
   (slots[slot] ? [{ ...slots[slot], feature }] : []));
 
-/** The groups of the page's menu, from the top: their titles by their names. */
-export const MENU_GROUPS = { views: "Views", share: "Share", class: "With a class", page: "This page", help: "Help" };
-
 /** The rows that features add to the menu, in their order. @type {{ value: (MenuRow & { feature: string })[] }} */
 export const menuRows = computed(() => features.value
   .flatMap(({ name: feature, menu = [] }) => menu.map((row) => ({ ...row, feature })))

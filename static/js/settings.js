@@ -279,9 +279,6 @@ export const ratesInWords = (agent, values) =>
     .filter(({ name, live }) => live === name && values[name] !== undefined)
     .map(({ name, setting }) => `${setting.symbol ?? setting.title}\u00a0${values[name]}`);
 
-/** Ends of the slider of the practice, at most less than the server accepts: any other number can be typed. */
-export const PRACTICE = { min: 50, max: 2000, step: 50 };
-
 /**
  * The value of an agent's live setting that no setting of its name begins: where its quantity begins.
  * @param {string} agent

@@ -3,8 +3,9 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
-  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, MENU_GROUPS, menuRows, Part, partsOf,
+  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, Part, partsOf,
 } from "../../static/js/features.js";
+import { MENU_GROUPS } from "../../static/js/components/menu.js";
 import { change, ignored, page, read } from "../../static/js/page-state.js";
 import { applyEvent, eventNames } from "../../static/js/store.js";
 import { allTabs, depth, openTab, pinnedTab, setDepth, tab } from "../../static/js/workspace.js";

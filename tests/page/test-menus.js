@@ -1,7 +1,7 @@
 // Keys in a menu: to which item each moves.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { nextItem } from "../../static/js/components/keyboard.js";
+import { nextItem } from "../../static/js/components/menu.js";
 
 const TITLES = ["Copy a link", "Present", "Lessons", " Panel"];
 

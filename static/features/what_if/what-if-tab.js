@@ -3,7 +3,7 @@ import { useEffect } from "preact/hooks";
 import { form, mistakes, isReadOnly } from "../../js/form.js";
 import { listed, metres, whole } from "../../js/format.js";
 import { mayStart } from "../../js/selectors.js";
-import { agentOf, kindOf, learns, PRACTICE, sliderOf } from "../../js/settings.js";
+import { agentOf, kindOf, learns, sliderOf } from "../../js/settings.js";
 import {
   applyDraft, differences, discardDraft, discardUntried, triable, triedValue, tryValue, untried,
 } from "./draft.js";
@@ -13,6 +13,7 @@ import {
 import { messageOf } from "../../js/titles.js";
 import { DotStrip } from "../../js/components/dot-strip.js";
 import { html } from "../../js/components/elements.js";
+import { PRACTICE } from "../../js/components/settings.js";
 import { closable, Restricted, SettingRow, Slider } from "../../js/components/fields.js";
 
 /** @import { SettingOption, SettingValue, WhatIfAnswer, WhatIfHalf } from "../../js/types.js" */

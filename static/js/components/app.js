@@ -1,27 +1,25 @@
 // The page: header, the views and messages.
 import { announcement } from "../headline.js";
 import { computed, effect } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import {
-  Loaded, loaded, loadPart, MENU_GROUPS, menuRows, Part, partsOf, runRow, Slot, wantedDialogs, withStyle,
+  Loaded, loaded, loadPart, menuRows, Part, partsOf, runRow, Slot, wantedDialogs, withStyle,
 } from "../features.js";
 import { share } from "../actions.js";
 import { page } from "../page-state.js";
 import {
-  clickedCell, helpIsOpen, isCardFolded, isPhone, isProjected, isStill, nextTheme, theme, toastMessage,
+  clickedCell, helpIsOpen, isCardFolded, isPhone, isProjected, isStill, toastMessage,
 } from "../page.js";
-import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
-import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
+import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth } from "../workspace.js";
 import { DropTarget } from "./dropping.js";
 import { html, Icon } from "./elements.js";
-import { focusMenu, moveInMenu, toggleHelp } from "./keyboard.js";
 import { Panel, replacement, ThumbTabs } from "./panel.js";
 import { Stage } from "./stage.js";
 import { TimeBar } from "./time-bar.js";
 
 /** @import { FunctionComponent } from "preact" */
-/** @import { MenuRow } from "../types.js" */
+/** @import { Toggled } from "../types.js" */
 
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
@@ -147,7 +145,7 @@ const Header = () => html`
         </button>
       `)}
     `}
-    <${Menu} />
+    <${More} />
   </header>
 `;
 
@@ -160,62 +158,19 @@ const DepthChoice = () => html`
   </div>
 `;
 
-/** Where a row is, if it is not everywhere: its class. */
-const [PHONE, WIDE] = /** @type {const} */ (["phone-only", "wide-only"]);
+const loadMenu = () => import("./menu.js").then(({ Menu }) => Menu);
 
-/** The rows of the core's own; the views stand in the header where there is room. @type {() => ShownRow[]} */
-const ownRows = () => [
-  ...headerViews.value.map(([, title, href]) => ({ title, href, group: "views", where: PHONE })),
-  { title: "Copy a link to this", icon: "link", group: "share", order: 0, run: share },
-  {
-    title: `${isPanelHidden.value ? "Show" : "Hide"} the panel`, icon: "panel", group: "page", where: WIDE,
-    run: () => toggleHidden("panel"),
-  },
-  { title: `Theme: ${theme.value}`, icon: theme.value, group: "page", run: nextTheme, stays: true },
-  { title: "Keys and help", group: "help", order: 50, run: toggleHelp },
-];
-
-/** A row of the menu. `stays`: it is pressed several times. @typedef {MenuRow & {
- *   feature?: string, where?: string, stays?: boolean,
- * }} ShownRow */
-
-/** What is seldom wanted, in groups. */
-function Menu() {
-  const rows = [...ownRows(), ...menuRows.value.filter((row) => !row.for || isOperator.value)]
-    .sort((a, b) => (a.order ?? 0) - (b.order ?? 0));
+/** What is seldom wanted: loaded when it is first opened. */
+function More() {
+  const [isOpen, setOpen] = useState(false);
   return html`
-    <details class="menu more-menu" onToggle=${focusMenu} onKeyDown=${moveInMenu}>
+    <details class="menu more-menu" onToggle=${(/** @type {Toggled} */ { target }) => setOpen(target.open)}>
       <summary class="quiet square" aria-label="More" aria-haspopup="menu" title="More">⋯</summary>
-      <div class="menu-body" role="menu" aria-label="Menu">
-        ${Object.entries(MENU_GROUPS).map(([group, title]) => html`
-          <${Group} key=${group} title=${title} rows=${rows.filter((row) => (row.group ?? "page") === group)} />
-        `)}
-      </div>
+      ${isOpen && html`
+        <div class="menu-body"><${Loaded} name="menu" load=${loadMenu} views=${headerViews.value} /></div>
+      `}
     </details>
   `;
-}
-
-/** @param {{ title: string, rows: ShownRow[] }} props */
-const Group = ({ title, rows }) => rows.length > 0 && html`
-  <div class=${`menu-group ${rows.every(({ where }) => where === PHONE) ? PHONE : ""}`} role="group"
-    aria-label=${title}>
-    <span class="menu-title" aria-hidden="true">${title}</span>
-    ${rows.map((row) => html`<${Row} row=${row} />`)}
-  </div>
-`;
-
-/** @param {{ row: ShownRow }} props */
-function Row({ row: { where = "", stays = false, ...row } }) {
-  const title = typeof row.title === "function" ? row.title() : row.title;
-  /** Close the menu, before what was chosen moves the focus. */
-  const choose = (/** @type {Event & { currentTarget: HTMLElement }} */ { currentTarget }) => {
-    if (!stays) currentTarget.closest("details")?.removeAttribute("open");
-    if (!row.href) runRow({ feature: "", ...row });
-  };
-  const common = { role: "menuitem", tabIndex: -1, class: where, onClick: choose };
-  return row.href
-    ? html`<a ...${common} href=${row.href}>${title}</a>`
-    : html`<button ...${common}>${row.icon && html`<${Icon} name=${row.icon} />`}${title}</button>`;
 }
 
 function Connection() {

@@ -73,52 +73,6 @@ function leaveMenu() {
   return true;
 }
 
-/** The items of a menu that can be seen, from the top. @param {HTMLElement} menu @returns {HTMLElement[]} */
-const itemsOf = (menu) =>
-  /** @type {HTMLElement[]} */ ([...menu.querySelectorAll("[role=menuitem]")]).filter((item) => item.offsetParent);
-
-/** Focus the first item of a menu that has been opened. @param {{ currentTarget: HTMLDetailsElement }} event */
-export const focusMenu = ({ currentTarget: menu }) => { if (menu.open) itemsOf(menu)[0]?.focus(); };
-
-/**
- * Move the focus among the items of a menu: by arrows, Home and End, and by the letter with which an item begins.
- * @param {KeyboardEvent & { currentTarget: HTMLDetailsElement }} event
- */
-export function moveInMenu(event) {
-  const { currentTarget: menu, key } = event;
-  if (!menu.open) {
-    if (key !== "ArrowDown") return;
-    event.preventDefault();
-    menu.open = true;
-    return;
-  }
-  if (event.ctrlKey || event.altKey || event.metaKey) return;
-  const items = itemsOf(menu);
-  const next = nextItem(items.map(({ textContent }) => textContent ?? ""), key,
-    items.indexOf(/** @type {HTMLElement} */ (document.activeElement)));
-  if (next === null) return;
-  event.preventDefault();
-  event.stopPropagation();
-  items[next]?.focus();
-}
-
-/**
- * The number of the item to which a key moves, round the ends of the menu; null for other keys.
- * @param {string[]} titles
- * @param {string} key
- * @param {number} at the number of the item that has the focus, −1 without one
- */
-export function nextItem(titles, key, at) {
-  const { length } = titles;
-  if (key === "Home") return 0;
-  if (key === "End") return length - 1;
-  if (key === "ArrowDown") return (at + 1) % length;
-  if (key === "ArrowUp") return (Math.max(at, 0) - 1 + length) % length;
-  if (key.length !== 1 || key === " ") return null;
-  const after = titles.map((_, n) => (at + 1 + n) % length);
-  return after.find((n) => titles[n].trim().toLowerCase().startsWith(key.toLowerCase())) ?? Math.max(at, 0);
-}
-
 /** Close what is on top; false if nothing is. */
 function leaveTop() {
   if (leaveMenu()) return true;

@@ -8,7 +8,7 @@ import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings,
-  mainSettings, PRACTICE, PRACTICE_FIELDS, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
+  mainSettings, PRACTICE_FIELDS, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import {
@@ -27,6 +27,9 @@ import { Disturbances, WorldPicker } from "./world.js";
 /** @import { Changed, Run, SettingOption, SettingValue } from "../types.js" */
 /** @import { ComponentChildren } from "preact" */
 /** @import { MainSetting } from "../settings.js" */
+
+/** Ends of the slider of the practice, at most less than the server accepts: any other number can be typed. */
+export const PRACTICE = { min: 50, max: 2000, step: 50 };
 
 /**
  * Settings of the next training and race: what those who try change, and for those who study all of them. A spectator

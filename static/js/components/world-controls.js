@@ -9,7 +9,8 @@ import {
 } from "../disturbances.js";
 import { listed } from "../format.js";
 import { azimuthsOf } from "../robots.js";
-import { isMoving, liveTraining, openRace, playbackName, stepShown } from "../on-stage.js";
+import { liveTraining, playbackName, stepShown } from "../on-stage.js";
+import { isMoving, openRace } from "../raced-on.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";

@@ -1,8 +1,7 @@
 // The tab of the world, in two parts that are always there: what happens in the run that is shown, and the world of the
 // next one.
-import {
-  isMoving, liveTraining, openRace, raceInView, shownRun, stepShown, work,
-} from "../on-stage.js";
+import { liveTraining, raceInView, shownRun, stepShown, work } from "../on-stage.js";
+import { isMoving, openRace } from "../raced-on.js";
 import { whole } from "../format.js";
 import { isActive, isOperator } from "../selectors.js";
 import { isClosed } from "../settings.js";
