@@ -41,8 +41,12 @@ const rankOf = (name) => DEPTHS.indexOf(name);
 /** @type {(name: string | null) => string | null} */
 const existing = (name) => (name !== null && name in kinds.value ? name : null);
 
-/** The tab that explains a step, which Watch shows, too; null without one. */
-export const explainingTab = computed(() => allTabs.value.find((name) => kinds.value[name].isInWatch) ?? null);
+/** Whether a feature hides a tab at present. @param {string} name */
+const isHidden = (name) => features.value.some(({ hidesTab }) => hidesTab?.(name));
+
+/** The tab that explains a step, which Watch shows, too; null without one, and while a feature hides it. */
+export const explainingTab = computed(() =>
+  allTabs.value.find((name) => kinds.value[name].isInWatch && (name === page.tab.value || !isHidden(name))) ?? null);
 
 /** The least depth that shows a tab. @param {string} tab */
 const neededFor = (tab) => (kinds.value[tab].isInWatch ? DEPTHS[0] : kinds.value[tab].depth);
@@ -64,9 +68,6 @@ export const followChartDepth = () => effect(() => {
 
 /** Whether at least so much is shown. @param {Depth} name */
 export const isAtLeast = (name) => rankOf(depth.value) >= rankOf(name);
-
-/** Whether a feature hides a tab at present. @param {string} tab */
-const isHidden = (tab) => features.value.some(({ hidesTab }) => hidesTab?.(tab));
 
 /** The tabs that the present depth offers, by name, and no feature hides. */
 export const tabs = computed(() => (isAtLeast("try")

@@ -1,10 +1,253 @@
-// Lessons and rooms: the card of the first lesson is there from the start, all else is loaded when it is opened.
+// Lessons and rooms. The card below the time bar is there from the start, of the first lesson or of that which the
+// address names: a question or a task, and the way to the next one. All else is loaded when it is opened.
+import { computed, effect, signal, untracked } from "@preact/signals";
+import { pending, resume, resumeRun, setShared } from "../../js/actions.js";
+import { earlyEndOf } from "../../js/narrative/moment.js";
+import { change, page } from "../../js/page-state.js";
 import { helpIsOpen } from "../../js/page.js";
+import { followRuns } from "../../js/runs.js";
+import { isOperator, mayChange } from "../../js/selectors.js";
+import { isAway, isGone, options } from "../../js/store.js";
+import { isAtLeast, isPanelHidden, openTab, tab } from "../../js/workspace.js";
 import { html } from "../../js/components/elements.js";
-import { LessonCard, Prediction } from "./components/lesson-card.js";
-import { card, cardNumber, cards, closeLesson, followLesson, isShown, openCard, openLesson } from "./lesson.js";
+import { Loaded, withStyle } from "../../js/features.js";
+import { candidates, FIRST, goTo, LEARNING, notedAt, show, vote, voteFor } from "./first-lesson.js";
+import {
+  followLinkedLesson, isComing, isInPicture, isShown, keep, lessonProgress, linked, linkProblem, practice, race,
+  restart, stateOf,
+} from "./lesson.js";
 
-/** @import { Feature } from "../../js/types.js" */
+/** @import { Feature, LessonView, Run } from "../../js/types.js" */
+/** @import { FirstCard, Said } from "./first-lesson.js" */
+
+// ---- the cards, and which one is open
+
+/** The cards of the first lesson that this page has. */
+const first = computed(() => FIRST.filter(({ isThere }) => isThere?.() ?? true));
+
+/** Number of the open card of the first lesson, from 1; 0 once it is done. */
+const firstNumber = computed(() => {
+  const { at } = lessonProgress.value;
+  if (at === "done") return 0;
+  const place = FIRST.findIndex(({ name }) => name === at);
+  // Of a card that this page does not have, the next.
+  return 1 + first.value.findIndex((card) => FIRST.indexOf(card) >= place);
+});
+
+/** How many cards the lesson has. */
+const total = computed(() => linked.value?.cards.length ?? first.value.length);
+
+/** The number of the open card, from 1; null where the lesson is hidden. */
+export const cardNumber = computed(() => {
+  if (page.hidden.value.includes("card") || options.value === null) return null;
+  if (page.lesson.value !== null) {
+    const number = page.card.value ?? 1;
+    return linked.value !== null && number <= total.value ? number : null;
+  }
+  return lessonProgress.value.isHidden ? null : firstNumber.value || null;
+});
+
+/** What a card says. @param {number} number from 1 @returns {Said} */
+function saidOn(number) {
+  if (linked.value === null) return saidBy(first.value[number - 1]);
+  const { title, ask } = linked.value.cards[number - 1];
+  return { title: title ?? `Card ${number}`, text: ask?.text ?? "", press: null };
+}
+
+/** What the cards say now, for those who read all of them. */
+export const cards = computed(() => (options.value === null
+  ? [] : Array.from({ length: total.value }, (_, n) => ({ ...saidOn(n + 1), ...askOf(n + 1) }))));
+
+/** What a card asks, for those who read all of them. @param {number} number @returns {{ ask?: "lane" }} */
+const askOf = (number) => (linked.value === null && first.value[number - 1].name === "vote" ? { ask: "lane" } : {});
+
+/** Whether the open card asks for the vote. */
+const isVoting = computed(() => cardNumber.value !== null && askOf(cardNumber.value).ask !== undefined);
+
+/** What the open card says; null without one. */
+export const card = computed(() => (cardNumber.value === null ? null : saidOn(cardNumber.value)));
+
+/** Open a card, and of the page what it is about. @param {number} number from 1 */
+export function openCard(number) {
+  const hidden = page.hidden.peek().filter((name) => name !== "card");
+  const linkedCards = linked.peek()?.cards;
+  if (linkedCards) change({ view: "race", card: number, hidden, ...stateOf(linkedCards[number - 1]) });
+  else {
+    keep({ at: first.peek()[number - 1].name, isHidden: false });
+    change({ card: null, hidden });
+  }
+}
+
+/** Go to the next card of a lesson of the address; after the last it is left. */
+const turnCard = () => (cardNumber.peek() === total.peek() ? leave() : openCard((cardNumber.peek() ?? 0) + 1));
+
+const leave = () => change({ card: null, lesson: null });
+
+/** Hide the lesson; the first one goes on from there when it is opened again. */
+export const closeLesson = () => (page.lesson.peek() === null ? keep({ isHidden: true }) : leave());
+
+/** Open the first lesson where it was left; from its beginning once it is done. */
+export function openLesson() {
+  if (lessonProgress.peek().at === "done") restart();
+  keep({ isHidden: false });
+  change({ view: "race", card: null, lesson: null, hidden: page.hidden.peek().filter((name) => name !== "card") });
+}
+
+// ---- what keeps a card from what it says
+
+/** Of a run that ended too early. @param {Run} run @returns {Said} */
+function ofEarlyEnd(run) {
+  const title = `The ${run.kind} ${earlyEndOf(run)?.verb}.`;
+  if (run.can_resume && isOperator.value) {
+    const isHeld = Boolean(pending.value[run.id]) || isAway.value;
+    return { title, text: "It can go on.", press: { label: "Go on", run: () => resumeRun(run), isHeld } };
+  }
+  const again = run.kind === "race" ? goTo("ready", () => keep({ race: null })) : restart;
+  return { title, text: "", press: { label: run.kind === "race" ? "Back to the start" : "Begin again", run: again } };
+}
+
+/** Of a run that waits for a person to let it go on. @param {Run} run @returns {Said} */
+const ofPause = (run) => ({
+  title: `The ${run.kind} is paused.`, text: "", press: { label: "Go on", run: resume, isHeld: isAway.value },
+});
+
+/** What a card says: first of all what keeps its promise from the screen, and the press that mends it. */
+/** @param {FirstCard} firstCard @returns {Said} */
+function saidBy(firstCard) {
+  const run = { practice, race, none: null }[firstCard.of ?? "none"]?.value ?? null;
+  if (run === null) return firstCard.say();
+  if (earlyEndOf(run)) return ofEarlyEnd(run);
+  if (run.state === "paused" && mayChange(run)) return ofPause(run);
+  const said = firstCard.say();
+  if (firstCard.holds?.()) return said;
+  if (!isInPicture(run)) {
+    return { ...said, press: { label: `Show the ${firstCard.of}`, run: () => show(run), isHeld: isComing(run) } };
+  }
+  const tabs = ["board", ...(firstCard.shows === LEARNING ? ["train"] : [])];
+  const isOnBoard = !isPanelHidden.value && tabs.includes(tab.value);
+  return isOnBoard ? said : { ...said, press: { label: "To the board", run: () => openTab("board") } };
+}
+
+// ---- what turns the cards
+
+/** The card that what is on the page brings now: of those after the open one the first whose event has happened. */
+const due = computed(() => {
+  if (cardNumber.value === null || page.lesson.value !== null) return null;
+  const [open, ...after] = first.value.slice(cardNumber.value - 1);
+  if (open.holds?.()) return null;
+  // A step whose explanation was closed by other means is done with.
+  return (open.holds ? after[0] : after.find(({ comes }) => comes?.())) ?? null;
+});
+
+/** Open a card that what happens has brought. @param {FirstCard} next */
+function comeTo(next) {
+  keep({ at: next.name, ...notedAt(next) });
+  // The race that is talked about stays, where it is this page's.
+  if (next.name === "finish" && isOperator.peek() && lessonProgress.peek().isMine) setShared({ stay: true });
+}
+
+/** Let what happens turn the cards of the first lesson, and note the runs that it is about. */
+function followFirstLesson() {
+  followRuns(computed(() => [lessonProgress.value.practice, lessonProgress.value.race].flatMap((id) => id ?? [])));
+  effect(() => {
+    const { practice: practiceId, race: raceId } = lessonProgress.value;
+    if (raceId && isGone(raceId)) keep({ race: null, at: "ready" });
+    if (practiceId && isGone(practiceId)) restart();
+  });
+  effect(() => {
+    const next = due.value;
+    if (next !== null) untracked(() => comeTo(next));
+  });
+}
+
+/** Fields of a card's state that are null unless a link says them. */
+const SAID_BY_LINKS = /** @type {const} */ (["run", "ghost", "moment", "depth", "tab", "pinned"]);
+
+/** Open the card of the address, and of what its state presets that which the link does not say itself. */
+function openLinkedCard() {
+  const number = Math.min(page.card.peek() ?? 1, total.peek());
+  const { form: preset = null } = stateOf(/** @type {LessonView} */ (linked.peek()).cards[number - 1]);
+  const said = SAID_BY_LINKS.filter((name) => page[name].peek() !== null);
+  const typed = page.form.peek();
+  const others = [...preset ?? []].filter(([name]) => !typed.has(name));
+  const pageState = Object.fromEntries(said.map((name) => [name, page[name].peek()]));
+  openCard(number);
+  change({ ...pageState, ...(preset && { form: new URLSearchParams([...others, ...typed]) }) });
+}
+
+/** Show the lesson that the address names from its card on, or the first one. */
+export function followLesson() {
+  followLinkedLesson(openLinkedCard);
+  effect(() => {
+    const number = page.card.value;
+    if (number !== null && page.lesson.value === null && options.value) {
+      untracked(() => openCard(Math.min(number, total.peek())));
+    }
+  });
+  followFirstLesson();
+}
+
+// ---- as it is drawn
+
+/** Whether the card of the lesson that the address names is read in full. */
+export const readerIsOpen = signal(false);
+
+const loadReader = () =>
+  withStyle("style/card.css", import("./components/lesson-reader.js")).then(({ LessonReader }) => LessonReader);
+
+function CardBar() {
+  const shown = card.value;
+  if (linkProblem.value) return html`<${NoLesson} />`;
+  if (!shown) return null;
+  const number = cardNumber.value;
+  return html`
+    <section class="card-bar" aria-label="Lesson">
+      <span class="card-number">
+        <span class="sr-only">Card </span>${number}<span class="of"> of </span>${total.value}
+      </span>
+      <p aria-live="polite"><b>${shown.title}</b>${" "}<span>${shown.text}</span></p>
+      ${linked.value ? html`<${LinkedButtons} />` : html`<${Highlighted} said=${shown} />`}
+      ${isAtLeast("try") && html`
+        <button class="quiet square small" aria-label="Hide the lesson" title="Hide the lesson" onClick=${closeLesson}>
+          ✕
+        </button>
+      `}
+    </section>
+  `;
+}
+
+const LinkedButtons = () => html`
+  <button class="secondary compact" onClick=${() => (readerIsOpen.value = true)}>Read</button>
+  <${Loaded} name="card of the lesson" load=${loadReader} />
+  <button class="secondary compact" onClick=${turnCard}>${cardNumber.value === total.value ? "Done" : "Next"}</button>
+`;
+
+/** What is to be pressed next, and nothing else is highlighted: a button, or the lanes to vote for. */
+/** @param {{ said: Said }} props */
+const Highlighted = ({ said: { press } }) => (press === null
+  ? html`<${Vote} />`
+  : html`
+    <button class="to-press" aria-disabled=${press.isHeld ? "true" : undefined} title="Next in the lesson"
+      onClick=${() => press.isHeld || press.run()}>${press.label}</button>
+  `);
+
+/** The lanes to vote for, and which one was. */
+export const Vote = () => html`
+  <span class="prediction to-press" role="group" aria-label="Your vote">
+    ${candidates.value.map(({ agent, title, color }) => html`
+      <button class="chip" style=${{ "--agent": color }} aria-pressed=${vote.value === agent ? "true" : "false"}
+        onClick=${() => voteFor(agent)}><span class="swatch"></span>${title}</button>
+    `)}
+  </span>
+`;
+
+/** The address names a lesson that is not here. */
+const NoLesson = () => html`
+  <section class="card-bar" aria-label="Lesson">
+    <p role="alert">${linkProblem}</p>
+    <button class="secondary compact" onClick=${leave}>Without a lesson</button>
+  </section>
+`;
 
 const FirstLesson = () => html`
   <button type="button" class="secondary" onClick=${() => { helpIsOpen.value = false; openLesson(); }}>
@@ -25,8 +268,9 @@ export default {
       run: () => (card.peek() ? closeLesson : openLesson)(),
     },
   ],
-  slots: { card: { component: LessonCard }, "buttons of the help": { component: FirstLesson } },
+  slots: { card: { component: CardBar }, "buttons of the help": { component: FirstLesson } },
   follow: followLesson,
-  hidesTab: (tab) => !isShown(tab),
-  deck: { cards, number: cardNumber, open: openCard, Question: Prediction },
+  // Of who watches and is to vote nothing else is asked.
+  hidesTab: (name) => !isShown(name) || (isVoting.value && !isAtLeast("try")),
+  deck: { cards, number: cardNumber, open: openCard, Question: Vote },
 };

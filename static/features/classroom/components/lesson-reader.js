@@ -1,9 +1,9 @@
 // A card of the lesson that the address names, in full: its text, its question, and what is revealed.
 import { useEffect, useState } from "preact/hooks";
-import { cardNumber, linked, linkedCard } from "../lesson.js";
+import { cardNumber, readerIsOpen } from "../feature.js";
+import { linked, linkedCard } from "../lesson.js";
 import { Answer, draftOf } from "../room/questions.js";
 import { Dialog, html } from "../../../js/components/elements.js";
-import { readerIsOpen } from "./lesson-card.js";
 import { Prose } from "./prose.js";
 
 export function LessonReader() {
