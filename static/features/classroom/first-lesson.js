@@ -236,7 +236,7 @@ function pressOfRace() {
   const isClose = most !== undefined && page.camera.value === String(most.lane + 1);
   return {
     label: isClose || !most ? "Look at all" : `Look at ${most.title}`, isHeld: !most,
-    run: () => (page.camera.value = isClose ? "leader" : String(most.lane + 1)),
+    run: () => (page.camera.value = isClose ? "directed" : String(most.lane + 1)),
   };
 }
 
