@@ -1,23 +1,23 @@
 // Lessons and rooms. The card below the time bar is there from the start, of the first lesson or of that which the
 // address names: a question or a task, and the way to the next one. All else is loaded when it is opened.
-import { computed, effect, signal, untracked } from "@preact/signals";
+import { computed, effect, untracked } from "@preact/signals";
 import { pending, resume, resumeRun, setShared } from "../../js/actions.js";
 import { earlyEndOf } from "../../js/narrative/moment.js";
 import { change, page } from "../../js/page-state.js";
 import { helpIsOpen } from "../../js/page.js";
 import { followRuns } from "../../js/runs.js";
 import { isOperator, mayChange } from "../../js/selectors.js";
+import { isPreset } from "../../js/settings.js";
 import { isAway, isGone, options } from "../../js/store.js";
 import { isAtLeast, isPanelHidden, openTab, tab } from "../../js/workspace.js";
 import { html } from "../../js/components/elements.js";
 import { Loaded, withStyle } from "../../js/features.js";
 import { candidates, FIRST, goTo, LEARNING, notedAt, show, vote, voteFor } from "./first-lesson.js";
 import {
-  followLinkedLesson, isComing, isInPicture, isShown, keep, lessonProgress, linked, linkProblem, practice, race,
-  restart, stateOf,
+  isComing, isInPicture, isShown, keep, lessonProgress, linked, linkProblem, practice, race, restart, stateOf,
 } from "./lesson.js";
 
-/** @import { Feature, LessonView, Run } from "../../js/types.js" */
+/** @import { Feature, Run } from "../../js/types.js" */
 /** @import { FirstCard, Said } from "./first-lesson.js" */
 
 // ---- the cards, and which one is open
@@ -35,7 +35,7 @@ const firstNumber = computed(() => {
 });
 
 /** How many cards the lesson has. */
-const total = computed(() => linked.value?.cards.length ?? first.value.length);
+export const total = computed(() => linked.value?.cards.length ?? first.value.length);
 
 /** The number of the open card, from 1; null where the lesson is hidden. */
 export const cardNumber = computed(() => {
@@ -78,10 +78,8 @@ export function openCard(number) {
   }
 }
 
-/** Go to the next card of a lesson of the address; after the last it is left. */
-const turnCard = () => (cardNumber.peek() === total.peek() ? leave() : openCard((cardNumber.peek() ?? 0) + 1));
-
-const leave = () => change({ card: null, lesson: null });
+/** Leave the lesson of the address. */
+export const leave = () => change({ card: null, lesson: null });
 
 /** Hide the lesson; the first one goes on from there when it is opened again. */
 export const closeLesson = () => (page.lesson.peek() === null ? keep({ isHidden: true }) : leave());
@@ -160,24 +158,9 @@ function followFirstLesson() {
   });
 }
 
-/** Fields of a card's state that are null unless a link says them. */
-const SAID_BY_LINKS = /** @type {const} */ (["run", "ghost", "moment", "depth", "tab", "pinned"]);
-
-/** Open the card of the address, and of what its state presets that which the link does not say itself. */
-function openLinkedCard() {
-  const number = Math.min(page.card.peek() ?? 1, total.peek());
-  const { form: preset = null } = stateOf(/** @type {LessonView} */ (linked.peek()).cards[number - 1]);
-  const said = SAID_BY_LINKS.filter((name) => page[name].peek() !== null);
-  const typed = page.form.peek();
-  const others = [...preset ?? []].filter(([name]) => !typed.has(name));
-  const pageState = Object.fromEntries(said.map((name) => [name, page[name].peek()]));
-  openCard(number);
-  change({ ...pageState, ...(preset && { form: new URLSearchParams([...others, ...typed]) }) });
-}
-
-/** Show the lesson that the address names from its card on, or the first one. */
+/** Show the lesson that the address names, or else the first one from its card on. */
 export function followLesson() {
-  followLinkedLesson(openLinkedCard);
+  effect(() => { isPreset.value = page.lesson.value !== null; });
   effect(() => {
     const number = page.card.value;
     if (number !== null && page.lesson.value === null && options.value) {
@@ -189,24 +172,21 @@ export function followLesson() {
 
 // ---- as it is drawn
 
-/** Whether the card of the lesson that the address names is read in full. */
-export const readerIsOpen = signal(false);
-
-const loadReader = () =>
-  withStyle("style/card.css", import("./components/lesson-reader.js")).then(({ LessonReader }) => LessonReader);
+/** The buttons of a lesson of the address. */
+const loadButtons = () => withStyle("style/card.css", import("./linked-lesson.js")).then(({ Buttons }) => Buttons);
 
 function CardBar() {
   const shown = card.value;
   if (linkProblem.value) return html`<${NoLesson} />`;
   if (!shown) return null;
-  const number = cardNumber.value;
   return html`
     <section class="card-bar" aria-label="Lesson">
       <span class="card-number">
-        <span class="sr-only">Card </span>${number}<span class="of"> of </span>${total.value}
+        <span class="sr-only">Card </span>${cardNumber}<span class="of"> of </span>${total}
       </span>
       <p aria-live="polite"><b>${shown.title}</b>${" "}<span>${shown.text}</span></p>
-      ${linked.value ? html`<${LinkedButtons} />` : html`<${Highlighted} said=${shown} />`}
+      ${linked.value
+        ? html`<${Loaded} name="card of the lesson" load=${loadButtons} />` : html`<${Highlighted} said=${shown} />`}
       ${isAtLeast("try") && html`
         <button class="quiet square small" aria-label="Hide the lesson" title="Hide the lesson" onClick=${closeLesson}>
           ✕
@@ -215,12 +195,6 @@ function CardBar() {
     </section>
   `;
 }
-
-const LinkedButtons = () => html`
-  <button class="secondary compact" onClick=${() => (readerIsOpen.value = true)}>Read</button>
-  <${Loaded} name="card of the lesson" load=${loadReader} />
-  <button class="secondary compact" onClick=${turnCard}>${cardNumber.value === total.value ? "Done" : "Next"}</button>
-`;
 
 /** What is to be pressed next, and nothing else is highlighted: a button, or the lanes to vote for. */
 /** @param {{ said: Said }} props */

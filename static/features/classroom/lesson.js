@@ -1,13 +1,12 @@
 // What the page has of lessons: how far this browser is in the first one, and the lesson that the address names in its
 // place. The latter presets the page and hides what its cards do not show; that is courtesy, since only a room locks
 // anything.
-import { computed, effect, signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { asTexts, page } from "../../js/page-state.js";
 import { shownRun } from "../../js/on-stage.js";
 import { storedText } from "../../js/page.js";
 import { isOwn } from "../../js/player.js";
 import { isActive, runOf } from "../../js/selectors.js";
-import { isLifted, isPreset, restriction } from "../../js/settings.js";
 import { scene, stage } from "../../js/store.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
@@ -82,29 +81,4 @@ export function stateOf({ state }) {
   const { form, ...pageState } = state ?? {};
   const set = Object.entries(pageState).filter(([, value]) => value !== null);
   return { ...Object.fromEntries(set), ...(form && { form: asTexts(form) }) };
-}
-
-/** Load the lesson that the address names, preset the page, and tell once it is there. */
-/** @param {() => unknown} onLoaded */
-export function followLinkedLesson(onLoaded) {
-  effect(() => {
-    // A card that runs nothing has no settings.
-    restriction.value = linkedCard.value?.go
-      ? { bounds: linkedCard.value.may ?? {}, reason: "The lesson's card sets" } : null;
-  });
-  effect(() => { isPreset.value = page.lesson.value !== null; });
-  effect(() => {
-    const id = page.lesson.value;
-    linkProblem.value = "";
-    if (id === linked.peek()?.id) return;
-    linked.value = null;
-    isLifted.value = false;
-    if (id === null) return;
-    // Most visits have none.
-    import("./api.js").then(({ getLesson }) => getLesson(id)).then((lesson) => {
-      if (page.lesson.peek() !== id) return;
-      linked.value = lesson;
-      onLoaded();
-    }, ({ message }) => (linkProblem.value = message));
-  });
 }

@@ -1,7 +1,8 @@
 // A card of the lesson that the address names, in full: its text, its question, and what is revealed.
 import { useEffect, useState } from "preact/hooks";
-import { cardNumber, readerIsOpen } from "../feature.js";
+import { cardNumber } from "../feature.js";
 import { linked, linkedCard } from "../lesson.js";
+import { readerIsOpen } from "../linked-lesson.js";
 import { Answer, draftOf } from "../room/questions.js";
 import { Dialog, html } from "../../../js/components/elements.js";
 import { Prose } from "./prose.js";
