@@ -50,7 +50,7 @@ function mediaSignal(query) {
 
 /** Whether the panel is below the stage, and its tabs at the thumb. As in style/workspace.css. */
 export const isPhone = mediaSignal("(max-width: 760px)");
-/** On a phone: whether the card below the stage is folded into its button, and what the foot of the panel holds is shown. */
+/** On a phone: whether the card is folded into its button, and what the foot of the panel holds is shown. */
 export const isCardFolded = signal(false);
 export const isFootOpen = signal(false);
 /** Whether there is room for a second panel beside the first. */

@@ -1,10 +1,11 @@
 // Lessons and rooms. The card below the time bar is there from the start, of the first lesson or of that which the
 // address names: a question or a task, and the way to the next one. All else is loaded when it is opened.
 import { computed, effect, untracked } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { pending, resume, resumeRun, setShared } from "../../js/actions.js";
 import { earlyEndOf } from "../../js/narrative/moment.js";
 import { change, page } from "../../js/page-state.js";
-import { helpIsOpen } from "../../js/page.js";
+import { helpIsOpen, isCardFolded } from "../../js/page.js";
 import { followRuns } from "../../js/runs.js";
 import { isOperator, mayChange } from "../../js/selectors.js";
 import { isPreset } from "../../js/settings.js";
@@ -177,6 +178,10 @@ const loadButtons = () => withStyle("style/card.css", import("./linked-lesson.js
 
 function CardBar() {
   const shown = card.value;
+  // A new one is not folded, as on a phone the one before may be.
+  useEffect(() => {
+    isCardFolded.value = false;
+  }, [cardNumber.value]);
   if (linkProblem.value) return html`<${NoLesson} />`;
   if (!shown) return null;
   return html`
