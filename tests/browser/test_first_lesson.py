@@ -1,0 +1,114 @@
+"""The first lesson by a visitor who only presses what is highlighted.
+
+Each card's promise is on the screen when the card is shown.
+"""
+
+import json
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.browser.budget import shown_on
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+from tests.browser.test_workspace import BUDGETS, DESK
+
+pytestmark = pytest.mark.timeout(400)
+
+MAX_PRESSES = 30
+"""More than there are cards: some cards are pressed twice."""
+Seen = dict[str, str]
+"""Card → what it said."""
+
+
+def highlighted(dashboard: Dashboard) -> Locator:
+    """What is highlighted on the page: a button, or the lanes to vote for."""
+    return dashboard.page.locator(".to-press")
+
+
+def open_card(dashboard: Dashboard) -> str:
+    """Name of the open card, as the browser keeps it."""
+    kept = dashboard.page.evaluate("localStorage['hexapods:first-lesson'] ?? '{}'")
+    return str(json.loads(kept).get("at", "start"))
+
+
+def curve(dashboard: Dashboard) -> Locator:
+    """The learning curve, which says in words what it shows."""
+    return dashboard.panel.get_by_role("region", name=re.compile("^Learning"))
+
+
+PROMISES: dict[str, Callable[[Dashboard], Locator]] = {
+    "start": lambda d: d.page.get_by_role("region", name="Stage", exact=True),
+    "tries": lambda d: d.headline.filter(has_text=re.compile("practises|walks")),
+    "step": lambda d: d.page.get_by_role("region", name="Explanation"),
+    "test": curve,
+    "changed": curve,
+    "newest": curve,
+    "vote": lambda d: d.group("Your vote"),
+    "ready": lambda d: d.lesson.filter(has_text="Your vote: Q-learning"),
+    "race": lambda d: d.rows.first,
+    "finish": lambda d: d.headline.filter(has_text="wins"),
+    "why": lambda d: d.headline.filter(has_text="wins"),
+    "turn": lambda d: d.lesson.filter(has_text="Your turn"),
+}
+"""Card → what has to be on the screen with it."""
+
+
+def press_highlighted(dashboard: Dashboard) -> None:
+    """Press it; of a group its first button."""
+    what = highlighted(dashboard)
+    is_group = what.get_attribute("role") == "group"
+    (what.get_by_role("button").first if is_group else what).click()
+
+
+def press_until_it_is_over(dashboard: Dashboard) -> Seen:
+    """Press what is highlighted until the lesson is over; return what each card said."""
+    page, seen, looked = dashboard.page, Seen(), False
+    page.set_viewport_size(DESK)
+    for _ in range(MAX_PRESSES):
+        enabled = page.locator(".to-press:not([aria-disabled=true])")
+        expect(
+            enabled.or_(dashboard.page.get_by_role("tab", name="Train", selected=True))
+        ).to_have_count(1)
+        if dashboard.lesson.count() == 0:
+            return seen
+        card = open_card(dashboard)
+        if card not in seen:
+            expect(PROMISES[card](dashboard)).to_be_in_viewport()
+            shown, budget = shown_on(page), BUDGETS["Watch"]
+            if card != "step":  # an explanation has the controls of its own tab
+                assert shown.controls <= budget.controls, card
+                assert shown.words <= budget.words, card
+        # What happens may have turned it meanwhile.
+        if open_card(dashboard) != card:
+            continue
+        seen[card] = dashboard.lesson.inner_text()
+        if card == "race" and looked:
+            expect(dashboard.lesson).not_to_contain_text("Hatched")
+            continue
+        looked = looked or card == "race"
+        press_highlighted(dashboard)
+        if card == "ready":
+            expect(dashboard.lesson).not_to_contain_text("ends the race")
+    raise AssertionError(f"the lesson is not over: {seen}")
+
+
+def test_who_only_presses_what_is_highlighted_learns_why_greedy_won(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    dashboard.open(server.address)
+    expect(highlighted(dashboard)).to_have_count(1)
+    assert dashboard.violations_in_both_themes() == []
+    seen = press_until_it_is_over(dashboard)
+    assert {"start", "test", "changed", "newest", "vote", "ready", "finish", "why", "turn"} <= {
+        *seen
+    }
+    assert re.search(r"Greedy wins by .*Your vote: Q-learning", seen["finish"], re.DOTALL)
+    assert re.search(r"Greedy: \d+ steps of \d+.mm", seen["why"])
+    # α was changed while it practised, and the race uses what was learned then.
+    [practice] = dashboard.get("api/v1/trainings")["items"]
+    [race] = dashboard.get("api/v1/races")["items"]
+    assert [change["settings"] for change in practice["changes"] if change.get("settings")]
+    assert race["config"]["lanes"][0]["training_id"] == practice["id"]
