@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Locator, expect
+from playwright.sync_api import Locator, ViewportSize, expect
 
 from tests.browser.budget import shown_on
 from tests.browser.dashboard import Dashboard
@@ -112,3 +112,31 @@ def test_who_only_presses_what_is_highlighted_learns_why_greedy_won(
     [race] = dashboard.get("api/v1/races")["items"]
     assert [change["settings"] for change in practice["changes"] if change.get("settings")]
     assert race["config"]["lanes"][0]["training_id"] == practice["id"]
+
+
+SMALL: list[ViewportSize] = [
+    {"width": 320, "height": 640},
+    {"width": 844, "height": 390},
+    {"width": 390, "height": 844},
+    {"width": 1280, "height": 600},
+]
+"""A narrow window, a phone on its side and upright, and the window of a small laptop."""
+_OUTLINE_PX = """element => {
+    const {outlineStyle, outlineWidth} = getComputedStyle(element);
+    return outlineStyle === "none" ? 0 : parseFloat(outlineWidth);
+}"""
+
+
+def test_what_is_highlighted_can_be_reached_in_small_windows_and_is_seen_in_forced_colours(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page, what = dashboard.page, highlighted(dashboard)
+    dashboard.open(shared_server.address)
+    for size in SMALL:
+        page.set_viewport_size(size)
+        expect(what).to_be_in_viewport(ratio=1)
+        assert dashboard.scroll_width() <= size["width"], size
+    page.emulate_media(forced_colors="active", reduced_motion="reduce")
+    assert what.evaluate(_OUTLINE_PX) >= 2
+    what.focus()
+    assert what.evaluate(_OUTLINE_PX) >= 2
