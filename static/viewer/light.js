@@ -19,13 +19,13 @@
       "/lamp": { intensity: 1.9, color: "#fff6ea" },
       "/rim": { intensity: 0.7, color: "#ffffff" },
       "/sky": { intensity: 1.9, color: "#ffffff", groundColor: "#d5dae2" },
-      grid: "#b4bfce", tint: "#ffffff", marks: "#6d7a8e", shadow: 0.42, antenna: 1.1,
+      grid: "#b4bfce", tint: "#ffffff", marks: "#6d7a8e", cells: 1.165, shadow: 0.42, antenna: 1.1,
     },
     dark: {
       "/lamp": { intensity: 2.5, color: "#fff6ea" },
       "/rim": { intensity: 1.4, color: "#dde9ff" },
       "/sky": { intensity: 1.25, color: "#f2f5ff", groundColor: "#4c5364" },
-      grid: "#2d3644", tint: "#2a3342", marks: "#93a1b6", shadow: 0.75, antenna: 2.2,
+      grid: "#2d3644", tint: "#2a3342", marks: "#93a1b6", cells: 1.25, shadow: 0.75, antenna: 2.2,
     },
   };
   /** Ghosts are translucent, and so is what they cast. */
@@ -54,7 +54,11 @@
     }],
     [/\/track\/marks$/, (mesh, theme) => unlit(mesh, theme.marks)],
     [/\/track\/(start|finish)$/, (mesh) => unlit(mesh, "#ffffff")],
-    [/\/grid\/(home|others)\/(fills|rims)$/, (mesh) => (mesh.material.toneMapped = false)],
+    [/\/grid\/(home|others)\/(fills|rims)$/, (mesh, theme) => {
+      mesh.material.toneMapped = false;
+      // What lies flat is darker in these lights; as much brighter it has the colours of the legend.
+      mesh.material.color.setScalar(theme.cells);
+    }],
     [/\/(ghost-)?shadows$/, (mesh, theme, name) => {
       mesh.renderOrder = ORDER.shadow;
       mesh.material.depthWrite = false;
