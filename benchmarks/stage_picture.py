@@ -152,7 +152,9 @@ def opened(browser: Browser, file: Path, theme: str, size: tuple[int, int]) -> P
 def ratios(values: Sequence[float], first: Sequence[float]) -> dict[str, float]:
     """Return the median and the quartiles of the ratios of rounds."""
     shares = [value / other for value, other in zip(values, first, strict=True)]
-    low, middle, high = statistics.quantiles(shares, n=4) if len(shares) > 1 else shares * 3
+    low, middle, high = (
+        statistics.quantiles(shares, n=4, method="inclusive") if len(shares) > 1 else shares * 3
+    )
     return {"median": round(middle, 3), "low": round(low, 3), "high": round(high, 3)}
 
 
