@@ -68,14 +68,16 @@ class VisitorRows:
     def states(
         self, states: Collection[State] = STATES, *, visitor: str | None = None
     ) -> Mapping[str, str]:
-        """Return the states of the runs that are kept, by id.
+        """Return the states of the runs that are kept and not deleted, by id.
 
         Args:
             states: only of runs in these states.
             visitor: only of runs of this visitor; None for all.
         """
-        query = select(RUNS.c.id, RUNS.c.state).join(
-            VISITOR_RUNS, VISITOR_RUNS.c.run_id == RUNS.c.id
+        query = (
+            select(RUNS.c.id, RUNS.c.state)
+            .join(VISITOR_RUNS, VISITOR_RUNS.c.run_id == RUNS.c.id)
+            .where(RUNS.c.deleted_at.is_(None))
         )
         if states is not STATES:
             query = query.where(RUNS.c.state.in_(states))

@@ -156,6 +156,18 @@ def test_a_first_start_whose_answer_was_lost_is_of_who_repeats_it(stranger: Api)
     assert stranger.call("DELETE", f"/trainings/{run_id}", headers=X).status_code == 204
 
 
+def test_a_visitor_restores_an_own_run_and_no_other(stranger: Api) -> None:
+    run = stranger.finished(stranger.start("/trainings", SHORT))
+    path = f"/runs/{run['id']}/restore"
+    assert stranger.call("DELETE", f"/trainings/{run['id']}", headers=X).status_code == 204
+    cookies = dict(stranger.client.cookies)
+    stranger.client.cookies.clear()
+    refused(stranger.call("POST", path, headers=X), 403)
+    stranger.client.cookies.update(cookies)
+    assert stranger.call("POST", path, headers=X).json()["id"] == run["id"]
+    assert stranger.get(f"/trainings/{run['id']}")["state"] == "finished"
+
+
 def test_a_repeated_start_belongs_to_a_client_that_became_a_visitor_meanwhile(
     stranger: Api,
 ) -> None:
