@@ -15,6 +15,7 @@ from hexapods.domain.errors import InvalidInput
 
 MODULES: Mapping[str, tuple[str, ...]] = {
     "cluster": ("distributed",),
+    "figures": ("matplotlib",),
     "gym": ("gymnasium",),
     "mcap": ("foxglove",),
     "parquet": ("pyarrow",),

@@ -77,7 +77,9 @@ from hexapods.domain.types import Action as Action
 from hexapods.domain.world import World as World
 from hexapods.experiments.comparison import Compared as Compared
 from hexapods.experiments.comparison import Comparison as Comparison
+from hexapods.experiments.figures.files import PaperFigure as PaperFigure
 from hexapods.experiments.folder import ResultNotStored as ResultNotStored
+from hexapods.experiments.profiles import Profile as Profile
 from hexapods.experiments.worker import ClusterLost as ClusterLost
 from hexapods.experiments.worker import Outcome as Outcome
 from hexapods.interruption import Interrupted as Interrupted

@@ -38,10 +38,13 @@ from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.comparison import Comparison, Unit
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.failures import failed_trials, failures_sentence
+from hexapods.experiments.figures.config import Columns, FigureConfig, Kind
+from hexapods.experiments.figures.files import PaperFigure, paper_figure
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.local_workers import defines_agents
+from hexapods.experiments.profiles import Profile
 from hexapods.experiments.progress import Progress
-from hexapods.experiments.setting_comparison import Distance, compare_settings
+from hexapods.experiments.setting_comparison import Distance, compare_settings, profiles_of
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import Outcome
 from hexapods.files import path_of
@@ -153,6 +156,51 @@ class Experiment:
                 has no seed with a distance.
         """
         return compare_settings(self.summary, a, b, distance=distance, unit=unit, rng=rng)
+
+    def profile(
+        self, *settings: str, distance: Distance = "total", unit: Unit = "m"
+    ) -> tuple[Profile, ...]:
+        """Return performance profiles: of each setting the share of seeds that reach a distance.
+
+        Args:
+            settings: as in `compare`; without any all that have a distance.
+            distance: as in `compare`.
+            unit: as in `compare`.
+
+        Raises:
+            UnknownName, InvalidInput: if there is no such setting, distance or unit, or a setting
+                has no seed with a distance.
+        """
+        return profiles_of(self.summary, settings, distance=distance, unit=unit)
+
+    def figure(
+        self,
+        *settings: str,
+        kind: Kind = "seeds",
+        columns: Columns = 1,
+        distance: Distance = "total",
+        unit: Unit = "m",
+    ) -> PaperFigure:
+        """Return a figure for a paper, in PDF, SVG and PNG, with caption, data and command.
+
+        It needs the extra `figures`. `save("figure.zip")` writes all files, `save("figure.pdf")`
+        the picture alone.
+
+        Args:
+            settings: as in `compare`; without any all that have a distance.
+            kind: `seeds`, `comparison` (of two settings) or `profile`.
+            columns: of a page: 1 (85 mm wide) or 2 (178 mm).
+            distance: as in `compare`.
+            unit: as in `compare`.
+
+        Raises:
+            MissingExtra: if Matplotlib is not installed.
+            UnknownName, InvalidInput: if an argument is not valid; the message names what is.
+        """
+        config = FigureConfig(
+            kind=kind, columns=columns, settings=settings, distance=distance, unit=unit
+        )
+        return paper_figure(self.summary, config)
 
     def save_report(self, folder: str | os.PathLike[str]) -> Path:
         """Write the report: its page, all trials as CSV, and the summary.

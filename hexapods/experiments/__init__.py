@@ -12,9 +12,10 @@
   and comparisons, from single results up to the summary document; `worlds`: the part of a league
   or recovery; `trial_rows`: trials as rows of a table.
 - `comparing`: compares two groups of seeds, `setting_comparison` two settings of a summary;
-  `comparison`: the result, and the same in sentences.
+  `comparison`: the result, and the same in sentences; `profiles`: performance profiles; `figures`:
+  figures for papers.
 - `published`: the paper's Table 1; `claims`: the paper's claims and their verdicts;
-  `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`, `labels` and
+  `narrative`: explanatory text; `report`: HTML page and CSV; `formatting`, `labels` and
   `failures`: numbers, names and failed trials as text.
 
 To add an experiment: a value in `presets`. To add a claim about one: a module in

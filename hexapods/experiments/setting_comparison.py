@@ -1,6 +1,7 @@
-"""Two settings of an experiment compared, by its summary alone."""
+"""Settings of an experiment compared, by its summary alone."""
 
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -11,9 +12,12 @@ from hexapods.experiments.comparing import compare
 from hexapods.experiments.comparison import Comparison, Group, Unit
 from hexapods.experiments.names import setting_names
 from hexapods.experiments.presets import preset_of
+from hexapods.experiments.profiles import Profile, profile_of
 
 Distance = Literal["total", "finished"]
 """`total`: after 50 steps of its own; `finished`: at time-out, when the first lane has used its."""
+_MAX_LISTED = 24
+"""Most settings that a message lists; of more those that are spelled most alike."""
 _CONDITIONS = ("gait", "observation", "robot", "world", "divisions", "grid_side_m")
 
 
@@ -56,11 +60,33 @@ def compare_settings(
     )
 
 
+def profiles_of(
+    summary: Mapping[str, Any],
+    settings: Sequence[str] = (),
+    *,
+    distance: Distance = "total",
+    unit: Unit = "m",
+) -> tuple[Profile, ...]:
+    """Return the performance profiles of some settings, or of all that have a distance.
+
+    Raises:
+        UnknownName, InvalidInput: as `compare_settings`.
+    """
+    entries = [find_setting(summary, text) for text in settings] or [
+        entry for entry in summary["settings"] if entry[distance] is not None
+    ]
+    names = names_of(summary, entries)
+    return tuple(
+        profile_of(group_of(summary, entry, distance, unit, names[entry["key"]]))
+        for entry in entries
+    )
+
+
 def find_setting(summary: Mapping[str, Any], text: str) -> Mapping[str, Any]:
     """Return the setting of a summary that a text means: its key or name, or a part of one.
 
     Raises:
-        UnknownName: if there is none; the message lists the keys.
+        UnknownName: if there is none; the message lists keys.
         InvalidInput: if several have the part.
     """
     entries: Sequence[Mapping[str, Any]] = summary["settings"]
@@ -76,9 +102,15 @@ def find_setting(summary: Mapping[str, Any], text: str) -> Mapping[str, Any]:
         if len(matching) == 1:
             return matching[0]
         if matching:
-            keys = ", ".join(entry["key"] for entry in matching)
-            raise InvalidInput(f"{text!r} is a part of several settings: {keys}; name one of them")
-    raise UnknownName("setting", text, [entry["key"] for entry in entries])
+            some = [entry["key"] for entry in matching[:_MAX_LISTED]]
+            more = ", …" if len(matching) > len(some) else ""
+            raise InvalidInput(
+                f"{text!r} is a part of several settings: {', '.join(some)}{more}; name one of them"
+            )
+    keys = [entry["key"] for entry in entries]
+    if len(keys) > _MAX_LISTED:
+        keys = get_close_matches(text, keys, _MAX_LISTED, cutoff=0)
+    raise UnknownName("setting", text, keys)
 
 
 def _plain(text: str) -> str:

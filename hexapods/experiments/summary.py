@@ -22,6 +22,7 @@ from hexapods.experiments.names import trial_names
 from hexapods.experiments.narrative.finding import find
 from hexapods.experiments.narrative.narrative import narrate
 from hexapods.experiments.plan import Plan, is_deterministic
+from hexapods.experiments.profiles import share_limits
 from hexapods.experiments.published import published
 from hexapods.experiments.setting_results import (
     SettingResults,
@@ -58,7 +59,8 @@ def summarise(
         (one per setting over its gaits), `curves` (learners in blocks and in one go),
         `versus` (pairs of learning agents), `timed` (races timed on this machine), `worlds`
         (agents along their practice, or after something happened, by world), and `claims`,
-        `story` and `finding` as text. What cannot be computed yet is None, or empty.
+        `story` and `finding` as text; `share_limits`, of the bands of performance profiles. What
+        cannot be computed yet is None, or empty.
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
@@ -89,6 +91,7 @@ def summarise(
         if preset.has_worlds
         else [],
     }
+    summary["share_limits"] = share_limits({entry["n"] for entry in summary["settings"]})
     summary["claims"] = judge(summary, CLAIMS[preset.claims] if preset.claims else ())
     summary["story"] = narrate(summary, preset)
     summary["finding"] = find(summary, preset)

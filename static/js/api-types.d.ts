@@ -216,6 +216,14 @@ export interface BetterGroups {
   states: number;
 }
 /**
+ * A value with its 95 % interval, which is null with too few seeds.
+ */
+export interface BootstrappedView {
+  value: number;
+  low: number | null;
+  high: number | null;
+}
+/**
  * Allowed values of a setting; without any bound, all that are valid.
  */
 export interface Bounds {
@@ -328,9 +336,9 @@ export interface PageState {
    */
   pinned: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
   /**
-   * its target: `leader`, `free`, or the number of a lane.
+   * its target: `directed` (or `leader`, the same), `free`, or the number of a lane.
    */
-  camera: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
+  camera: ("directed" | "leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
   /**
    * parts of the page that are hidden.
    */
@@ -687,6 +695,24 @@ export interface ClockEvent {
 export interface CodeView {
   command: string;
   python: string;
+}
+/**
+ * A setting as it was compared: its name, interquartile mean and number of seeds.
+ */
+export interface ComparedView {
+  name: string;
+  iqm: BootstrappedView;
+  seeds: number;
+  is_deterministic: boolean;
+}
+/**
+ * A comparison in sentences; one that says nothing is empty.
+ */
+export interface ComparisonWordsView {
+  outcome: string;
+  chance: string;
+  further: string;
+  seeds: string;
 }
 /**
  * Computing time of an experiment [s], trials per second, and workers.
@@ -2835,9 +2861,9 @@ export interface GivenPageState {
    */
   pinned?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
   /**
-   * its target: `leader`, `free`, or the number of a lane.
+   * its target: `directed` (or `leader`, the same), `free`, or the number of a lane.
    */
-  camera?: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
+  camera?: ("directed" | "leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
   /**
    * parts of the page that are hidden.
    */
@@ -4239,6 +4265,44 @@ export interface RunPage {
   items: ((TrainingView | RaceView | ExperimentView) | DamagedRunView)[];
 }
 /**
+ * Setting `a` compared with setting `b`.
+ */
+export interface SettingComparisonView {
+  a: ComparedView;
+  b: ComparedView;
+  difference: BootstrappedView;
+  improvement: BootstrappedView;
+  /**
+   * whether both have the same seeds, which were resampled together.
+   */
+  is_paired: boolean;
+  /**
+   * number of seeds that only one of two paired settings has.
+   */
+  left_out: number;
+  /**
+   * the setting that is ahead, if the interval of the difference excludes 0.
+   */
+  ahead: "a" | "b" | "not established";
+  /**
+   * what further seeds would bring.
+   */
+  outlook: "settled" | "reachable" | "out of reach" | "equal" | "too few seeds";
+  /**
+   * of each setting, that settle the difference with a chance of 80 % if it is as large as it seems; null where none would.
+   */
+  further_seeds: number | null;
+  /**
+   * of the values: metres, half grid sides or shares of greedy's distance.
+   */
+  unit: "m" | "h" | "greedy";
+  /**
+   * whether distances are those at time-out.
+   */
+  is_at_time_out: boolean;
+  words: ComparisonWordsView;
+}
+/**
  * Results of a setting over its seeds.
  *
  * `seed_numbers` are those of the seeds that have a distance, in the order of the points.
@@ -4291,6 +4355,14 @@ export interface SettingView {
     | Distances
     | PublishedView
     | undefined;
+}
+/**
+ * Limits of the 95 % intervals of 0, 1, … of a number of seeds, as shares of them.
+ */
+export interface ShareLimits {
+  seeds: number;
+  low: number[];
+  high: number[];
 }
 /**
  * Spectators' address with its QR code, or the reason why there is none.
@@ -4431,6 +4503,10 @@ export interface SummaryView {
   worlds?: WorldView[];
   claims: ClaimView[];
   story: NarrativeSection[];
+  /**
+   * limits of shares of seeds, by which performance profiles have their bands.
+   */
+  share_limits?: ShareLimits[];
   /**
    * what came of it, in a sentence; empty where its claims say it.
    */

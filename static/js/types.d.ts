@@ -66,6 +66,7 @@ export type {
   SettingView as Setting,
   SeedsView as WhatIfHalf,
   SpectatorsView as Spectators,
+  SettingComparisonView as SettingComparison,
   SummaryView as Summary,
   TableView as StateTable,
   ListedTournament,

@@ -9,7 +9,9 @@
   (`hexapods.experiments.local_workers`), and sends results, summaries and the report.
 - In the database: `tables`, with `trial_rows` and `migrations`; `stored_trials` decodes rows of
   trials, `archived_trials` validates those of an archive.
-- Over REST: `routes`, `request_bodies`, `response_models`; `options` are what forms need.
+- Over REST: `routes`, `comparison_routes`, `request_bodies`, `response_models`; `options` are what
+  forms need.
 - On the command line (`commands`): `experiment_command` and `sweep_command`, with
-  `trial_options` (their options) and `command_trials` (trials with a progress bar).
+  `trial_options` (their options) and `command_trials` (trials with a progress bar);
+  `compare_command` and `figure_command`, which read a `stored_summary`.
 """

@@ -1,7 +1,8 @@
-"""The commands `experiment` and `sweep`."""
+"""The commands `experiment`, `sweep`, `compare` and `figure`."""
 
 from collections.abc import Mapping
 
 COMMANDS: Mapping[str, str] = {
-    name: f"app.features.experiments.{name}_command:{name}" for name in ("experiment", "sweep")
+    name: f"app.features.experiments.{name}_command:{name}"
+    for name in ("experiment", "sweep", "compare", "figure")
 }

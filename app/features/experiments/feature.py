@@ -10,7 +10,7 @@ from app.answer import Answer
 from app.api.policy import OPERATOR
 from app.api.starts import StartKind
 from app.feature import Feature
-from app.features.experiments import routes
+from app.features.experiments import comparison_routes, routes
 from app.features.experiments.options import (
     FIELD_HELP,
     FIELD_TITLES,
@@ -41,7 +41,7 @@ class ExperimentFeature(Feature):
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:
         del agents
-        return (routes.router,)
+        return (routes.router, comparison_routes.router)
 
     @classmethod
     def start_kinds(cls, agents: tuple[str, ...]) -> Sequence[StartKind]:

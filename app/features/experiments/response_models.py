@@ -11,6 +11,7 @@ from app.api.option_answers import Described
 from app.events.run_view import DamagedRunView, RunView
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
+from hexapods.experiments.comparison import Ahead, Outlook, Unit
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.presets import Measure
 from hexapods.experiments.result import ExperimentResult
@@ -290,6 +291,65 @@ class VersusView(Parameters):
     verdict: Decided
 
 
+class BootstrappedView(Answer):
+    """A value with its 95 % interval, which is null with too few seeds."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+class ComparedView(Answer):
+    """A setting as it was compared: its name, interquartile mean and number of seeds."""
+
+    name: str
+    iqm: BootstrappedView
+    seeds: Count
+    is_deterministic: bool
+
+
+class ComparisonWordsView(Answer):
+    """A comparison in sentences; one that says nothing is empty."""
+
+    outcome: str
+    chance: str
+    further: str
+    seeds: str
+
+
+class SettingComparisonView(Answer):
+    """Setting `a` compared with setting `b`.
+
+    Attributes:
+        a: the first setting.
+        b: the second setting.
+        difference: of the interquartile means, a − b.
+        improvement: probability that a random seed of `a` exceeds a random seed of `b`.
+        is_paired: whether both have the same seeds, which were resampled together.
+        left_out: number of seeds that only one of two paired settings has.
+        ahead: the setting that is ahead, if the interval of the difference excludes 0.
+        outlook: what further seeds would bring.
+        further_seeds: of each setting, that settle the difference with a chance of 80 % if it is
+            as large as it seems; null where none would.
+        unit: of the values: metres, half grid sides or shares of greedy's distance.
+        is_at_time_out: whether distances are those at time-out.
+        words: the same in sentences.
+    """
+
+    a: ComparedView
+    b: ComparedView
+    difference: BootstrappedView
+    improvement: BootstrappedView
+    is_paired: bool
+    left_out: Count
+    ahead: Ahead
+    outlook: Outlook
+    further_seeds: Count | None
+    unit: Unit
+    is_at_time_out: bool
+    words: ComparisonWordsView
+
+
 class Curve(Answer):
     """Interquartile means over the seeds at some steps, with 95 % intervals [m]."""
 
@@ -368,10 +428,19 @@ class NarrativeSection(Answer):
     text: str
 
 
+class ShareLimits(Answer):
+    """Limits of the 95 % intervals of 0, 1, … of a number of seeds, as shares of them."""
+
+    seeds: Count
+    low: list[Share]
+    high: list[Share]
+
+
 class SummaryView(Answer):
     """Summary of an experiment's trials so far.
 
     Attributes:
+        share_limits: limits of shares of seeds, by which performance profiles have their bands.
         parameters: names of what is varied beside place and agent.
         finding: what came of it, in a sentence; empty where its claims say it.
     """
@@ -392,4 +461,5 @@ class SummaryView(Answer):
     worlds: list[WorldView] = field(default_factory=list)
     claims: list[ClaimView]
     story: list[NarrativeSection]
+    share_limits: list[ShareLimits] = field(default_factory=list)
     finding: str = ""

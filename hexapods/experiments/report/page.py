@@ -1,7 +1,8 @@
 """The report as one HTML file that opens without a server.
 
 It has the dashboard's own modules and styles (`offline_page`), and blocks of data: `summary`;
-`options`, the titles and colours; `report`, its title and the command that repeats the experiment.
+`options`, the titles and colours; `report`, its title and the command that repeats the experiment;
+`comparisons`, of pairs of settings.
 """
 
 import html
@@ -10,6 +11,7 @@ from typing import Any
 
 from hexapods.experiments.presets import PRESETS
 from hexapods.experiments.report.command import command
+from hexapods.experiments.report.compared_pairs import compared_pairs
 from hexapods.experiments.report.page_options import page_options
 from hexapods.offline_page import data_block, digest, import_map, styles
 
@@ -34,6 +36,7 @@ def page(summary: Mapping[str, Any]) -> str:
             ("options", page_options(summary)),
             ("report", report),
             ("summary", summary),
+            ("comparisons", {"pairs": compared_pairs(summary)}),
         )
     )
     nonce = digest(modules + blocks)

@@ -106,6 +106,13 @@ export const UNIT_NAMES = {
   greedy: "share of greedy’s distance",
 };
 
+/** Titles of an axis: its name and unit. @type {Record<string, string>} */
+export const AXIS_TITLES = {
+  m: "distance in 50 steps, m",
+  h: "distance in 50 steps, half grid sides",
+  greedy: "distance as a share of greedy’s",
+};
+
 // ---- axes of charts of distance against steps, in the unit that is shown; all of a report are read together
 
 const HEADROOM = 1.06;
@@ -129,6 +136,6 @@ export function distanceAxis(charts) {
   ]).filter((value) => typeof value === "number");
   return {
     min: -largest(values.map((value) => -value), 0), max: HEADROOM * largest(values, MIN_TOP),
-    unit: UNIT_NAMES[unit.value], text: shown,
+    unit: UNIT_NAMES[unit.value], title: AXIS_TITLES[unit.value], text: shown,
   };
 }

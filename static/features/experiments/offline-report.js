@@ -14,6 +14,18 @@ import { configInWords, findingIn } from "./words.js";
 /** The data of a block. @param {string} id */
 const dataOf = (id) => JSON.parse(document.getElementById(id)?.textContent ?? "null");
 
+/** @type {{ pairs: { keys: string[] }[] }} */
+const comparisons = dataOf("comparisons");
+
+/** A comparison that the file has. @type {import("./components/two-settings.js").Compare} */
+function storedComparison(a, b) {
+  const stored = comparisons.pairs.find(({ keys }) => keys.includes(a) && keys.includes(b));
+  const command = `hexapods compare FOLDER ${a} ${b}`;
+  return stored
+    ? Promise.resolve(/** @type {any} */ (stored))
+    : Promise.reject(new Error(`This file has no comparison of these two; the command line makes it: ${command}`));
+}
+
 const FILES = "summary.json has all numbers of this page, trials.csv every trial.";
 
 /** @param {{ summary: Summary, report: Report }} props */
@@ -28,7 +40,8 @@ const OfflineReport = ({ summary, report }) => html`
         ${findingIn(summary) && html`<p class="finding">${findingIn(summary)}</p>`}
         <p class="dim">${configInWords(/** @type {Run["config"]} */ (/** @type {unknown} */ (summary.config)))}</p>
       </div>
-      <${Findings} summary=${summary} more=${[["Command", html`<code>${report.command}</code>`], ["Files", FILES]]} />
+      <${Findings} summary=${summary} compare=${storedComparison}
+        more=${[["Command", html`<code>${report.command}</code>`], ["Files", FILES]]} />
     </div>
   </main>
 `;

@@ -5,23 +5,27 @@ import { simulatorTitle } from "../../../js/titles.js";
 import { html } from "../../../js/components/elements.js";
 import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
 import { ResultPanels } from "./result.js";
+import { TwoSettings } from "./two-settings.js";
 
 /** @import { Setting, Summary } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
 
 /** What happens at a click on the dot of a seed. @typedef {(setting: Setting, distance_m: number) => unknown} OnSeed */
 
+/** @import { Compare, SaveFigure } from "./two-settings.js" */
 /**
  * `children` follow the figure; `more` are further rows of the method.
  * @param {{
- *   summary: Summary, onSeed?: OnSeed | null, more?: [string, ComponentChildren][], children?: ComponentChildren
+ *   summary: Summary, onSeed?: OnSeed | null, more?: [string, ComponentChildren][], children?: ComponentChildren,
+ *   compare: Compare, saveFigure?: SaveFigure | null
  * }} props
  */
-export function Findings({ summary, onSeed = null, more = [], children }) {
+export function Findings({ summary, onSeed = null, more = [], children, compare, saveFigure = null }) {
   return html`
     <${LeftOut} trials=${summary.trials} />
     <${ResultPanels} summary=${summary} onSeed=${onSeed} />
     ${children}
+    <${TwoSettings} summary=${summary} compare=${compare} saveFigure=${saveFigure} />
     ${!summary.worlds?.length && html`<${AtAGlance} summary=${summary} />`}
     <${Versus} summary=${summary} />
     <${Claims} claims=${summary.claims ?? []} isComplete=${summary.trials.done >= summary.trials.total} />

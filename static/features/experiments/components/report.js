@@ -1,6 +1,7 @@
 // The report of one experiment. It fills while trials end.
 import { useMemo } from "preact/hooks";
 import { pending, runAgain } from "../../../js/actions.js";
+import { getComparison, getFigure } from "../api.js";
 import { setFormOf } from "../form.js";
 import { forgetPreset } from "../presets.js";
 import { command, deleteExperiment, summary, summaryError } from "../runs.js";
@@ -9,6 +10,7 @@ import { configInWords, findingIn } from "../words.js";
 import { downloads, partOf } from "../../../js/files.js";
 import { addressOf, page } from "../../../js/page-state.js";
 import { isActive, isOperator } from "../../../js/selectors.js";
+import { saveFile } from "../../../js/save-file.js";
 import { messageOf } from "../../../js/titles.js";
 import { html, Icon, ProgressBar } from "../../../js/components/elements.js";
 import { Problem } from "../../../js/components/foot.js";
@@ -21,6 +23,7 @@ import { paceOf, runTitle } from "../feature.js";
 
 /** @import { Run, State, Verb } from "../../../js/types.js" */
 /** @import { ComponentChildren } from "preact" */
+/** @import { SaveFigure } from "./two-settings.js" */
 
 /** Id of the menu from which name, tags and notes are changed. */
 const MORE = "more-of-report";
@@ -30,8 +33,10 @@ export function Report({ run }) {
   const newest = summary.value;
   // Progress changes several times a second, the summary seldom.
   const findings = useMemo(() => html`
-    <${Findings} summary=${newest} onSeed=${showSeed}><${Seeds} summary=${newest} /><//>
-  `, [newest]);
+    <${Findings} summary=${newest} onSeed=${showSeed} compare=${comparisonOf(run.id)} saveFigure=${figureOf(run.id)}>
+      <${Seeds} summary=${newest} />
+    <//>
+  `, [newest, run.id]);
   const hasSeeds = newest?.settings?.some(({ n }) => n > 0);
   const finding = findingIn(newest);
   return html`
@@ -52,6 +57,16 @@ export function Report({ run }) {
     </section>
   `;
 }
+
+/** @param {string} id */
+const comparisonOf = (id) => (/** @type {string} */ a, /** @type {string} */ b) => getComparison(id, a, b);
+
+/** Save a figure of an experiment for a paper. @param {string} id @returns {SaveFigure} */
+const figureOf = (id) => async (kind, columns, settings) => {
+  const query = new URLSearchParams({ kind, columns });
+  for (const key of settings) query.append("setting", key);
+  saveFile(await getFigure(id, query), `${kind}-${id}.zip`);
+};
 
 /** Its tags and notes. @param {{ run: Run }} props */
 function OwnWords({ run }) {
