@@ -285,6 +285,10 @@ export interface Card {
    */
   go: ("training" | "race" | "what-if") | null;
   /**
+   * how the class teaches a robot, which walks by the form of the state.
+   */
+  teach: Teach | null;
+  /**
    * what is revealed afterwards, or its text alone.
    */
   reveal: Reveal | string | null;
@@ -343,6 +347,27 @@ export interface PageState {
    * parts of the page that are hidden.
    */
   hidden: ("panel" | "card")[];
+}
+/**
+ * How a class teaches a robot; gait, robot and simulator are those of the card's form.
+ */
+export interface Teach {
+  /**
+   * learner of the class's robot, and of the one beside it.
+   */
+  agent: "tamer";
+  /**
+   * what the robot beside it learns from: the `reward` itself, or a `simulated` person.
+   */
+  rival: "reward" | "simulated";
+  /**
+   * how long the class teaches [s].
+   */
+  seconds: number;
+  /**
+   * how long a step of the robot lasts, which walks slower for that [s].
+   */
+  step_s: number;
 }
 /**
  * Text and answer that are revealed after the answers.
@@ -898,6 +923,10 @@ export interface DeletedRun {
 export interface DeletedView {
   deleted: string[];
   kept: KeptRun[];
+  /**
+   * until when `POST /runs/{run_id}/restore` brings them all back; null where one is gone for good.
+   */
+  restorable_until: string | null;
 }
 /**
  * A run that could not be deleted, and why.
@@ -1225,6 +1254,7 @@ export interface EventBodies {
   viewers: ViewersEvent;
   robots: RobotsEvent;
   room: RoomEvent;
+  teaching: TeachingEvent;
   tournament: TournamentEvent;
   summary: SummaryEvent;
 }
@@ -2252,6 +2282,37 @@ export interface RoomEvent {
   needs_approval: boolean;
 }
 /**
+ * The class has pressed, or its teaching has begun or ended; sent on the room's stage alone.
+ */
+export interface TeachingEvent {
+  card: number;
+  /**
+   * of the steps since the last event.
+   */
+  presses: StepPresses[];
+}
+/**
+ * What the class pressed for a step of the robot.
+ */
+export interface StepPresses {
+  /**
+   * number of the step, from 0.
+   */
+  step: number;
+  /**
+   * numbers of pupils who pressed + and −; each counts once, with the last press.
+   */
+  plus: number;
+  /**
+   * numbers of pupils who pressed + and −; each counts once, with the last press.
+   */
+  minus: number;
+  /**
+   * mean over those who pressed, from -1 to 1.
+   */
+  value: number;
+}
+/**
  * A tournament has changed; `GET /tournaments/{tournament_id}` returns it.
  */
 export interface TournamentEvent {
@@ -2810,6 +2871,10 @@ export interface GivenCard {
    */
   go?: ("training" | "race" | "what-if") | null;
   /**
+   * how the class teaches a robot, which walks by the form of the state.
+   */
+  teach?: GivenTeach | null;
+  /**
    * what is revealed afterwards, or its text alone.
    */
   reveal?: GivenReveal | string | null;
@@ -2868,6 +2933,27 @@ export interface GivenPageState {
    * parts of the page that are hidden.
    */
   hidden?: ("panel" | "card")[];
+}
+/**
+ * How a class teaches a robot; gait, robot and simulator are those of the card's form.
+ */
+export interface GivenTeach {
+  /**
+   * learner of the class's robot, and of the one beside it.
+   */
+  agent?: "tamer";
+  /**
+   * what the robot beside it learns from: the `reward` itself, or a `simulated` person.
+   */
+  rival?: "reward" | "simulated";
+  /**
+   * how long the class teaches [s].
+   */
+  seconds?: number;
+  /**
+   * how long a step of the robot lasts, which walks slower for that [s].
+   */
+  step_s?: number;
 }
 /**
  * Text and answer that are revealed after the answers.
@@ -3663,6 +3749,13 @@ export interface SharedBy {
 export interface PredictionView {
   card: number;
   value: JsonValue;
+}
+/**
+ * A press that counts, and the step that it is about, from 0.
+ */
+export interface PressView {
+  step: number;
+  value: 1 | -1;
 }
 /**
  * Preview of a walking problem.
@@ -4648,6 +4741,53 @@ export interface TableView {
    * of a learner that keeps one value for each landing, which all actions share that end with the feet there; null for others, and where there are too many for an answer.
    */
   landings: LandingsView | null;
+}
+/**
+ * A robot of a teaching.
+ */
+export interface TaughtRobot {
+  /**
+   * id of its training.
+   */
+  run_id: string;
+  /**
+   * how far it walks in 50 steps now that it has learned [m]; null before the reveal, but for a teacher.
+   */
+  distance_m: number | null;
+}
+/**
+ * How the class of a room teaches a robot on the card that is shown.
+ */
+export interface TeachingView {
+  card: number;
+  /**
+   * `ready`: nothing was started; `teaching`: presses count; `frozen`; `ended`.
+   */
+  state: "ready" | "teaching" | "frozen" | "ended";
+  /**
+   * number of steps of the robot.
+   */
+  steps: number;
+  /**
+   * duration of one in the run's own time [s].
+   */
+  step_s: number;
+  /**
+   * by step, oldest first.
+   */
+  presses: StepPresses[];
+  /**
+   * the robot of the class, and the one that learns from the reward.
+   */
+  taught: TaughtRobot | null;
+  /**
+   * the robot of the class, and the one that learns from the reward.
+   */
+  rival: TaughtRobot | null;
+  /**
+   * id of the race of both; null before the reveal.
+   */
+  race_id: string | null;
 }
 /**
  * A lane's distance over time: points are [s, m], decision intervals are [from s, to s].

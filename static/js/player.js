@@ -354,10 +354,10 @@ async function grow(/** @type {number} */ now) {
 
 /**
  * Play what is to be played, from now on.
- * @param {{ ofStage?: boolean }} [how] whether the stage is shown while there is no replay of this page's own
+ * @param {{ ofStage?: () => boolean }} [how] whether the stage is shown while there is no replay of this page's own
  */
-export function followPlayer({ ofStage = true } = {}) {
-  followsStage.value = ofStage;
+export function followPlayer({ ofStage = () => true } = {}) {
+  effect(() => { followsStage.value = ofStage(); });
   // A link, or "back", names another run or another moment; the stage shows another run.
   effect(() => {
     const [isOther, moment] = [source.value !== opened, page.moment.value];

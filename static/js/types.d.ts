@@ -5,6 +5,7 @@ import type { FunctionComponent } from "preact";
 import type * as Api from "./api-types.js";
 
 export type {
+  ActionValue,
   AgentOption as Agent,
   AllowanceView as Allowance,
   Ask,
@@ -51,11 +52,15 @@ export type {
   Preview,
   ReplayMark,
   ReplayView as ReplayPlan,
+  QTableView as QTable,
   ResultEntry,
   ResultsView as Results,
   RoomState,
   RoomView as Classroom,
   RobotOption as Robot,
+  StepPresses,
+  TeachingEvent,
+  TeachingView as TeachingState,
   StoredRobotView as StoredRobot,
   WholeRobotView as WholeRobot,
   FoundView as Found,

@@ -36,7 +36,10 @@ def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
         assert api.call(method, path, json={}).status_code != 429
 
 
-_START = ("/resume", "/video", "/robots", "/rooms", "/rooms/{code}/runs", "/tournaments")
+_START = (
+    *("/resume", "/video", "/robots", "/rooms", "/rooms/{code}/runs", "/rooms/{code}/teaching"),
+    "/tournaments",
+)
 """Ends of paths that start something without an idempotency key."""
 
 

@@ -11,8 +11,11 @@
 - `questions` has the kinds of questions: what an answer is, and how it is scored; `card_starts`
   makes what a card runs, and `what_ifs` answers what it asks; `results` are those of a room, and
   `names` draws codes and names.
-- Over REST: `lesson_routes`, `room_routes`, `pages`, `request_bodies`, `response_models`,
-  `room_views`. In the database: `tables`, with `lesson_rows` and `room_rows`, and `migrations`.
+- `teach` is the part of a card on which a class teaches a robot, `teaching` its service, and
+  `press_book` adds up the presses of a class by step.
+- Over REST: `lesson_routes`, `room_routes`, `teach_routes`, `pages`, `request_bodies`,
+  `response_models`, `room_views`. In the database: `tables`, with `lesson_rows` and `room_rows`,
+  and `migrations`.
 
 To add a lesson that is built in: a file in `built_in`. A kind of question: `Kind` and a class in
 `questions`, and an entry in `static/features/classroom/room/questions.js`.

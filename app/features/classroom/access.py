@@ -129,6 +129,7 @@ class Participant:
         actions: dict[CardAction, str] = {
             "predict": "an answer to the card",
             "run": "the run of the card",
+            "press": "presses of + and −",
         }
         allowed_actions = [
             words for action, words in actions.items() if room.refusal(action) is None

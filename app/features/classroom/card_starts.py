@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -72,6 +73,30 @@ class CardStarts:
         body = fields.race(seed) if card.go == "race" else {**fields.training(), "seed": seed}
         return self._read("race" if card.go == "race" else "training", {**body, "name": name})
 
+    def teaching(self, card: Card, trainer: str, name: str) -> TrainingStart:
+        """Return the start of a robot that is taught on a card, by a trainer of its agent.
+
+        Where people teach it, its steps last as long as the card says; errors as `start`.
+        """
+        assert card.teach is not None  # noqa: S101 - by its caller
+        teach = card.teach
+        settings = {
+            "agent": teach.agent,
+            "trainer": trainer,
+            "watched_step_s": teach.step_s,
+            "steps": teach.steps,
+            # They would hold the robot while it is watched; at the end it is evaluated anyway.
+            "evaluate_every": 0,
+        }
+        fields = _Fields({**card.form, **settings})
+        body = {**fields.training(), "seed": 0, "name": name or None}
+        start = self._read("training", body)
+        assert isinstance(start, TrainingStart)  # noqa: S101 - by the body
+        if trainer != "people":
+            return start
+        config = start.config
+        return replace(start, config=replace(config, pace=config.robot.step_s / teach.step_s))
+
     def what_if(self, card: Card, settings: Mapping[str, Any]) -> TrainingConfig:
         """Return the config of the training of a what-if card; errors as `start`."""
         start = self._read("training", _Fields({**card.form, **settings}).training())
@@ -85,10 +110,12 @@ class CardStarts:
             InvalidInput: naming the card, if one cannot.
         """
         for number, card in enumerate(lesson.cards):
-            if card.go is None:
+            if card.go is None and card.teach is None:
                 continue
             try:
-                if card.go == "what-if":
+                if card.teach is not None:
+                    check_training(self.teaching(card, "people", "").config)
+                elif card.go == "what-if":
                     check_training(self.what_if(card, {}))
                 else:
                     self.start(card, {}, 0, "").runs(store, lambda: "0")

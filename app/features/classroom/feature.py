@@ -15,7 +15,7 @@ from app.api.deps import EventListener, Services
 from app.api.identity import Identity
 from app.api.pages import page_content
 from app.feature import DeleteRuns, Feature
-from app.features.classroom import lesson, lesson_routes, pages, room_routes
+from app.features.classroom import lesson, lesson_routes, pages, room_routes, teach_routes
 from app.features.classroom.access import Participant, RoomAccess
 from app.features.classroom.card_starts import CardStarts
 from app.features.classroom.lesson_rows import LessonRows
@@ -25,6 +25,7 @@ from app.features.classroom.room_rows import Seat, is_seen_by
 from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.features.classroom.tables import METADATA
+from app.features.classroom.teaching import Teaching, TeachingEvent
 from app.features.classroom.what_ifs import WhatIfs
 from app.jobs.queue import Owner
 from app.storage.database.store import RunStore
@@ -53,7 +54,10 @@ class Classroom(Feature):
         "room_runs": f"{_BACKUP}, and shows these runs to operators alone",
     }
     state_events = ("room",)
-    event_bodies: ClassVar[Mapping[str, type[Answer]]] = {"room": RoomEvent}
+    event_bodies: ClassVar[Mapping[str, type[Answer]]] = {
+        "room": RoomEvent,
+        "teaching": TeachingEvent,
+    }
 
     def __init__(self, core: Services) -> None:
         super().__init__(core)
@@ -62,6 +66,7 @@ class Classroom(Feature):
         self.stages = core.provide(RoomStages(core.stages, core.new_stage))
         core.provide(CardStarts(core.agents))
         core.provide(WhatIfs(core.features.get("what_if")))
+        core.provide(Teaching(core))
         self.rooms.on_changed = self.stages.publish
         self.access = RoomAccess(self.rooms, core.settings)
         self.rooms.is_here = lambda seat: any(self._listeners_of(seat))
@@ -70,7 +75,7 @@ class Classroom(Feature):
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:
         del agents
-        return lesson_routes.router, room_routes.router
+        return lesson_routes.router, room_routes.router, teach_routes.router
 
     def pages(self) -> Sequence[BaseRoute]:
         return pages.routes(page_content("features/classroom/room.html", self.core.page_files))

@@ -21,6 +21,7 @@ from app.features.classroom.markdown import (
 )
 from app.features.classroom.page_state import PageState, Tab
 from app.features.classroom.questions import MAX_CHOICES, Ask, Number, check_question, check_right
+from app.features.classroom.teach import Teach
 from app.storage.json_text import is_finite
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import Record
@@ -78,6 +79,7 @@ class Card(Record):
         may: by name the settings that may be changed, each with its bounds.
         ask: its question.
         go: what the button runs, from the form of the state; null for nothing.
+        teach: how the class teaches a robot, which walks by the form of the state.
         reveal: what is revealed afterwards, or its text alone.
     """
 
@@ -88,6 +90,7 @@ class Card(Record):
     may: Annotated[Mapping[str, Bounds], MaxLen(MAX_MAY)] = Field(default_factory=dict)
     ask: Ask | None = None
     go: Go | None = None
+    teach: Teach | None = None
     reveal: Reveal | Markdown | None = None
 
     @property
@@ -123,6 +126,7 @@ CardNumber = Annotated[int, Field(ge=0, le=MAX_CARDS - 1)]
 _RECORDS: Mapping[str, type[Any]] = {
     "state": PageState,
     "ask": Ask,
+    "teach": Teach,
     "reveal": Reveal,
     "Reveal": Reveal,
 }
@@ -217,6 +221,8 @@ def _check_card(card: Card, where: str) -> None:
             check_bounds(name, bounds, card.form)
         except InvalidInput as error:
             raise InvalidInput(f"{where}.may.{name[:MAX_SETTING_NAME]}: {error}") from error
+    if card.teach is not None and card.go is not None:
+        raise InvalidInput(f"{where}.teach: a card either runs something or teaches; leave out go")
     if card.ask is not None and card.revealed.answer is not None:
         check_right(card.ask, card.revealed.answer, f"{where}.reveal")
 

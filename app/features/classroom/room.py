@@ -11,9 +11,10 @@ from app.features.classroom.room_rows import ParticipantRow, RoomRun
 from app.storage.errors import Conflict, Forbidden, NotFound
 
 Phase = Literal["open", "frozen", "ended"]
-CardAction = Literal["predict", "run"]
+CardAction = Literal["predict", "run", "press"]
 """Actions of a participant that the card may allow."""
 _ASKS_NOTHING = "card {number} asks nothing; wait for one with a question"
+_TEACHES_NOTHING = "card {number} teaches nothing; wait for one on which the class teaches"
 _RUNS_NOTHING = "card {number} runs nothing; wait for one with a button to go"
 
 
@@ -153,6 +154,8 @@ class Room:
             return _ASKS_NOTHING.format(number=self.card)
         if action == "run" and card.go is None:
             return _RUNS_NOTHING.format(number=self.card)
+        if action == "press" and card.teach is None:
+            return _TEACHES_NOTHING.format(number=self.card)
         return None
 
     def check_open(self) -> None:

@@ -62,6 +62,7 @@ from app.features.classroom.room import Room
 from app.features.classroom.room_stages import RoomStages, path_of_room
 from app.features.classroom.room_views import room_view
 from app.features.classroom.rooms import Rooms
+from app.features.classroom.teaching import Teaching
 from app.features.classroom.what_ifs import WhatIfs
 from app.storage.errors import Conflict, Forbidden, NotFound
 from app.viewer.shared_stage import SharedStage
@@ -251,6 +252,8 @@ def show_card(
     services: ServicesDep, request: Request, code: CodePath, body: CardBody
 ) -> RecordResponse[RoomView]:
     """Show a card to all; participants can change the settings that it opens, and no others."""
+    if services.of(Rooms).get(code).card != body.card:
+        services.of(Teaching).stop(code)
     room = services.of(Rooms).show_card(code, body.card)
     return RecordResponse(room_view(request, services, room, None))
 
@@ -262,6 +265,7 @@ def freeze_room(
 ) -> RecordResponse[RoomView]:
     """Forbid answers and starts in the room; with `frozen` false permit them again."""
     room = services.of(Rooms).freeze(code, (body or FreezeBody()).frozen)
+    services.of(Teaching).freeze(room)
     return RecordResponse(room_view(request, services, room, None))
 
 
@@ -274,6 +278,7 @@ def reveal_card(
     number = None if body is None else body.card
     shown = services.of(Rooms).get(code).card
     room = services.of(Rooms).reveal(code, shown if number is None else number)
+    services.of(Teaching).race(room)
     return RecordResponse(room_view(request, services, room, None))
 
 
@@ -283,6 +288,7 @@ async def end_room(
     services: ServicesDep, request: Request, code: CodePath
 ) -> RecordResponse[RoomView]:
     """Close the room and its stage; its results stay."""
+    await run_in_threadpool(services.of(Teaching).stop, code)
     room = await run_in_threadpool(services.of(Rooms).end, code)
     await services.of(RoomStages).close(room.code)
     view = await run_in_threadpool(room_view, request, services, room, None)

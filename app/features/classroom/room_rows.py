@@ -20,6 +20,8 @@ from hexapods.domain.records import to_json
 
 Seat = tuple[str, int]
 """A participant: code of the room, and seed."""
+CLASS_SEED = -1
+"""In place of a participant's seed, of runs of the whole class."""
 
 
 def _as_it_is(row: Any) -> Any:

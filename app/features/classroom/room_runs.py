@@ -7,7 +7,7 @@ from typing import Any
 
 from app.api.answers import ComparisonView
 from app.features.classroom.room import Room, given_key
-from app.features.classroom.room_rows import RoomRows, RoomRun, Seat
+from app.features.classroom.room_rows import CLASS_SEED, RoomRows, RoomRun, Seat
 from app.features.classroom.seats import reserve_seed
 from app.jobs.linked_start import LinkedStart
 from app.jobs.submissions import Start
@@ -48,7 +48,7 @@ class RoomRuns:
             # Those of who was removed stay, and stay hidden: no newcomer has their seed.
             reserve_seed(room, run.seed)
             room.used_at = max(room.used_at, run.created_at)
-            if run.seed in room.participants:
+            if run.seed in room.participants or run.seed == CLASS_SEED:
                 room.runs[run.run_id] = run
         self._unread = self._rows.run_ids() - self._runs.keys()
 
@@ -97,7 +97,7 @@ class RoomRuns:
 
     def interrupted(self, room: Room) -> list[str]:
         """Return the ids of interrupted runs of a room, without trainings that its races need."""
-        mains = [main for main in room.runs.values() if main.is_main]
+        mains = [run for run in room.runs.values() if run.is_main or run.seed == CLASS_SEED]
         stored = [(main.run_id, self._find(main)) for main in mains]
         return [run_id for run_id, run in stored if run is not None and run.state == "interrupted"]
 
@@ -126,6 +126,34 @@ class RoomRuns:
             return queue(start)
         except BaseException:
             self._unlink(room, start.links)
+            raise
+
+    def start_of_class(
+        self, room: Room, given: Mapping[str, Any], start: Start, queue: Callable[[Start], Run]
+    ) -> Run:
+        """Start a run of the whole class on the card that is shown; see `Rooms.start_of_class`."""
+
+        def link(runs: Sequence[Run]) -> None:
+            links = [
+                RoomRun(
+                    run_id=run.id,
+                    room=room.code,
+                    seed=CLASS_SEED,
+                    card=room.card,
+                    given=given,
+                    is_main=False,
+                    is_shown=True,
+                    created_at=run.created_at,
+                )
+                for run in runs
+            ]
+            self._keep(room, links)
+
+        linked = LinkedStart(start, link)
+        try:
+            return queue(linked)
+        except BaseException:
+            self._unlink(room, linked.links)
             raise
 
     def answer_of(

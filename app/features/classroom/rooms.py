@@ -280,6 +280,28 @@ class Rooms:
         self._changed(room)
         return room
 
+    def start_of_class(
+        self, code: str, given: Mapping[str, Any], start: Start, queue: Callable[[Start], Run]
+    ) -> Run:
+        """Start a run of the whole class on the card that is shown, which all may see.
+
+        Args:
+            code: code of the room.
+            given: what the run is, by name.
+            start: the start.
+            queue: queues it.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it has ended.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            run = self._runs.start_of_class(room, given, start, queue)
+        self._changed(room)
+        return run
+
     def change_participant(
         self, code: str, seed: int, *, is_name_hidden: bool | None, is_approved: bool | None
     ) -> Room:

@@ -3,7 +3,7 @@ import { addressOf, call, start } from "../../js/api.js";
 
 /** @import { Classroom, Joined, LessonDocument, LessonList, LessonView } from "../../js/types.js" */
 /** @import { NewLesson, NewRoom } from "../../js/types.js" */
-/** @import { Results, Run, WhatIfAnswer } from "../../js/types.js" */
+/** @import { QTable, Results, Run, TeachingState, WhatIfAnswer } from "../../js/types.js" */
 
 const YAML = "application/yaml";
 
@@ -46,6 +46,17 @@ export const predict = (code, card, value) => call("POST", `${pathOf(code)}/pred
 /** Run what the card runs; a what-if is answered at once. */
 /** @type {(code: string, card: number, settings: Record<string, unknown>) => Promise<Run | WhatIfAnswer>} */
 export const startRun = (code, card, settings) => start(`${pathOf(code)}/runs`, { card, settings });
+/** The robots and the presses of a card that teaches. @type {(code: string) => Promise<TeachingState>} */
+export const getTeaching = (code) => call("GET", `${pathOf(code)}/teaching`);
+/** @type {(code: string) => Promise<TeachingState>} */
+export const startTeaching = (code) => call("POST", `${pathOf(code)}/teaching`);
+/** @type {(code: string) => Promise<TeachingState>} */
+export const stopTeaching = (code) => call("DELETE", `${pathOf(code)}/teaching`);
+/** Press + (1) or − (−1) at a moment of the picture [s]. */
+/** @type {(code: string, body: { run_id: string, at_s: number, value: 1 | -1 }) => Promise<{ step: number }>} */
+export const press = (code, body) => call("POST", `${pathOf(code)}/presses`, body);
+/** The values that a training has learned. @type {(run_id: string) => Promise<QTable>} */
+export const getTable = (run_id) => call("GET", `trainings/${run_id}/q-table?format=json`);
 /** Results of a card; on a projector as the class may see them. */
 /** @type {(code: string, card: number, isProjector: boolean) => Promise<Results>} */
 export const getResults = (code, card, isProjector) =>

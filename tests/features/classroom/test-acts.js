@@ -5,6 +5,7 @@ import { actOf } from "../../../static/features/classroom/room/acts/index.js";
 import { meanCurve } from "../../../static/features/classroom/room/acts/mean-curve.js";
 import { plotAxis, stackedDots } from "../../../static/features/classroom/room/acts/plot-geometry.js";
 import { predictionsOf, winsOf } from "../../../static/features/classroom/room/acts/predictions.js";
+import { teaching } from "../../../static/features/classroom/room/teaching.js";
 
 /** Facts of a card, as far as an act is chosen by them. @param {any} changes @returns {any} */
 const facts = ({ shown = {}, spotlight = null, ...changes } = {}) => ({
@@ -28,6 +29,19 @@ test("a run that the teacher shows goes before all else", () => {
   const lit = { spotlight: "run1", shown: { ask: { kind: "number" } } };
   assert.equal(actOf(facts(lit))?.name, "run");
   assert.equal(actOf(facts({ ...lit, isRevealed: false }))?.name, "run");
+});
+
+test("a robot that the class teaches is shown from the start of it on", () => {
+  const teaches = { shown: { teach: { seconds: 60 } }, isRevealed: false };
+  assert.equal(actOf(facts(teaches)), null);
+  for (const state of ["teaching", "frozen", "ended"]) {
+    teaching.value = /** @type {any} */ ({ state });
+    assert.equal(actOf(facts(teaches))?.name, "teach");
+    assert.equal(actOf(facts({ isRevealed: false })), null);
+  }
+  teaching.value = /** @type {any} */ ({ state: "ready" });
+  assert.equal(actOf(facts(teaches)), null);
+  teaching.value = null;
 });
 
 test("an axis holds all values, from zero or below; over orders of magnitude it has powers of ten", () => {

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { Dialog, html, Icon } from "../../../js/components/elements.js";
-import { Slot } from "../../../js/features.js";
+import { Loaded, Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { resultsFile } from "../api.js";
 import { PupilsWindow, Sharing } from "../components/sharing.js";
@@ -39,6 +39,8 @@ export function Cockpit() {
     <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value.words}</p>`}</div>
   `;
 }
+
+const loadTeaching = () => import("./teach-cockpit.js").then(({ TeachInCockpit }) => TeachInCockpit);
 
 const STATES = { open: "You teach", frozen: "All stand still", ended: "The room has ended" };
 
@@ -132,7 +134,7 @@ function Counts({ classroom }) {
 function Actions({ classroom }) {
   const { state, spotlight: lit, shown } = classroom;
   const isOver = state === "ended";
-  const hasReveal = Boolean(shown.ask || shown.go || classroom.html.reveal);
+  const hasReveal = Boolean(shown.ask || shown.go || shown.teach || classroom.html.reveal);
   return html`
     <div class="row deeds-of-all">
       <button class="secondary" aria-pressed=${state === "frozen" ? "true" : "false"}
@@ -143,6 +145,7 @@ function Actions({ classroom }) {
         onClick=${reveal}>${isRevealed.value ? "Revealed" : "Reveal"}</button>
       ${lit && html`<button class="secondary" onClick=${() => spotlight(null)}>Spotlight off</button>`}
     </div>
+    ${shown.teach && html`<${Loaded} name="teaching" load=${loadTeaching} isOver=${isOver} />`}
     <${Failure} at="freeze" /><${Failure} at="reveal" /><${Failure} at="spotlight" />
   `;
 }

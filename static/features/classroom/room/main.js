@@ -6,18 +6,22 @@ import { Loaded, withStyle } from "../../../js/features.js";
 import { followTheme } from "../../../js/page.js";
 import { connection } from "../../../js/store.js";
 import { Phone } from "./phone.js";
-import { followRoom, isProjector, isTeacher, refusal, replayed, room } from "./room.js";
+import { followRoom, isBeside, isProjector, isTeacher, isTeaching, refusal, refresh, replayed, room } from "./room.js";
 import { Closed, Waiting } from "./join.js";
 
 function Page() {
   if (room.value === null) return refusal.value ? html`<${Closed} />` : html`<${Waiting} />`;
+  if (isBeside) return html`<${Loaded} name="robot" load=${loadBeside} />`;
   if (isProjector) return html`<${Loaded} name="projector" load=${loadProjector} />`;
   return isTeacher.value ? html`<${Loaded} name="cockpit" load=${loadCockpit} />` : html`<${Phone} />`;
 }
 
 // A class of phones needs neither.
-const loadProjector = () =>
-  withStyle("features/classroom/style/room-projector.css", import("./projector.js")).then(({ Projector }) => Projector);
+const STYLE = "features/classroom/style";
+const loadProjector = () => withStyle(`${STYLE}/room-projector.css`,
+  withStyle(`${STYLE}/teach.css`, import("./projector.js"))).then(({ Projector }) => Projector);
+const loadBeside = () => withStyle(`${STYLE}/teach.css`, import("./beside.js"))
+  .then(({ Beside }) => Beside);
 const loadCockpit = () => import("./cockpit.js").then(({ Cockpit }) => Cockpit);
 
 followTheme();
@@ -29,11 +33,16 @@ effect(() => {
 let hasPicture = false;
 // Who has nothing to see loads nothing that plays; if that fails, again once the connection is back.
 effect(() => {
-  if (hasPicture || connection.value !== "live" || (!isProjector && replayed.value === null)) return;
+  const hasNothing = isBeside || (!isProjector && !isTeaching.value && replayed.value === null);
+  if (hasPicture || connection.value !== "live" || hasNothing) return;
   hasPicture = true;
   import("./picture.js").then(({ followPicture }) => untracked(followPicture), () => (hasPicture = false));
 });
-followRoom();
+// The frame of the robot beside the one of the class plays what its projector tells it, and nothing else.
+if (isBeside) {
+  connection.value = "live";
+  refresh();
+} else followRoom();
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));
 root.replaceChildren();

@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
 import { html } from "../../../js/components/elements.js";
-import { Loaded, Slot } from "../../../js/features.js";
+import { Loaded, Slot, withStyle } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";
@@ -48,6 +48,8 @@ const Ended = () => html`
 const loadOwnRobot = () => import("./participant-run.js").then(({ OwnRobot }) => OwnRobot);
 const loadClass = () => import("./phone-results.js").then(({ ClassDots }) => ClassDots);
 const loadWhatIf = () => import("./phone-results.js").then(({ WhatIfDots }) => WhatIfDots);
+const loadTeaching = () => withStyle("features/classroom/style/teach.css", import("./teach-phone.js"))
+  .then(({ TeachOnPhone }) => TeachOnPhone);
 const loadOwnRun = () => import("./participant-run.js").then(({ OwnRun }) => OwnRun);
 
 /** The card that is shown. @param {{ classroom: Classroom }} props */
@@ -57,7 +59,8 @@ function Present({ classroom }) {
   // The reveal comes to all at once, and over a poor network: what draws it is there before.
   useEffect(() => { loadClass().catch(() => {}); }, []);
   return html`
-    ${replayed.value && html`<${Loaded} name="robot" load=${loadOwnRobot} />`}
+    ${shown.teach ? html`<${Loaded} name="buttons" load=${loadTeaching} />`
+      : replayed.value && html`<${Loaded} name="robot" load=${loadOwnRobot} />`}
     <article class="phone-part" aria-labelledby="card-title">
       <p class="dim">Card ${card + 1} of ${cards}</p>
       ${shown.title && html`<h1 id="card-title">${shown.title}</h1>`}
@@ -72,7 +75,7 @@ function Present({ classroom }) {
     ${ownWhatIf.value && html`<${Loaded} name="thirty robots" load=${loadWhatIf} answer=${ownWhatIf.value} />`}
     <${Closer} card=${shown} />
     ${classroom.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${classroom} />`}
-    <${Next} card=${shown} />
+    ${!shown.teach && html`<${Next} card=${shown} />`}
     <${CardActions} card=${shown} number=${card} isOpen=${isOpen} />
   `;
 }

@@ -10,7 +10,7 @@ import {
   closeReplay, drawIn, endTime, followPlayer, isBuffering, openReplay, playback, playReplay, plan, position,
   replayProblem, setReplaySpeed,
 } from "../../../js/player.js";
-import { isProjector, replayed, room, toReplay } from "./room.js";
+import { isProjector, isTeaching, replayed, room, toReplay } from "./room.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "../../../js/replay-frames.js" */
@@ -21,9 +21,9 @@ const SPEEDS = { training: 8, race: 2 };
 /** Ids of the runs whose pictures have been where their distances can be told. @type {Signal<Set<string>>} */
 export const arrived = signal(new Set());
 
-/** Show the stage on a projector, on phones the own run as soon as it has a step. */
+/** Show the stage on a projector, and on phones that teach; on others the own run as soon as it has a step. */
 export function followPicture() {
-  followPlayer({ ofStage: isProjector });
+  followPlayer({ ofStage: () => isProjector || isTeaching.value });
   if (!isProjector) followOwnRun();
 }
 

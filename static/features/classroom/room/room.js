@@ -11,12 +11,15 @@ import { applyEvent, connection, eventNames, options, runs, setEntry } from "../
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../../../js/api.js" */
-/** @import { CardResults, Classroom, RoomState, Run } from "../../../js/types.js" */
+/** @import { CardResults, Classroom, RoomState, Run, TeachingEvent } from "../../../js/types.js" */
 
-/** The code of the address, as it was typed; whether the page is for the projector, or of a pupil in any case. */
+/**
+ * The code of the address, as it was typed; whether the page is for the projector, of a pupil in any case, or the frame
+ * of a robot beside another one.
+ */
 const { name: typed, flags } = ownAddress();
 export const code = typed;
-export const [isProjector, isPupils] = ["projector", "join"].map((flag) => flags.includes(flag));
+export const [isProjector, isPupils, isBeside] = ["projector", "join", "beside"].map((flag) => flags.includes(flag));
 
 /** Null until the server has answered. @type {Signal<Classroom | null>} */
 export const room = signal(null);
@@ -35,6 +38,10 @@ export const isTeacher = computed(() => room.value?.role === "teacher" && !isPup
 /** Results of the card that is shown; null until they are known. */
 export const shownResults = computed(() => results.value[`${room.value?.card}`] ?? null);
 export const isRevealed = computed(() => room.value !== null && room.value.revealed.includes(room.value.card));
+/** Whether the class teaches a robot on the card that is shown: then phones show the stage. */
+export const isTeaching = computed(() => Boolean(room.value?.shown.teach));
+/** Newest event of what the class teaches; null before the first. @type {Signal<TeachingEvent | null>} */
+export const newestTeaching = signal(null);
 /** The participant's own entry in them; null without one. */
 export const ownEntry = computed(() => shownResults.value?.entries.find(({ is_own }) => is_own) ?? null);
 
@@ -59,6 +66,7 @@ export const ownRun = computed(() => runs.value.get(ownRunId.value ?? "") ?? nul
 
 /** The run that the page replays: the own one of this card, else the one that the card names. */
 export const toReplay = computed(() => {
+  if (isTeaching.value) return null;
   const run = ownRun.value;
   if (run && (run.state === "finished" || run.progress.done > 0)) return { id: run.id, kind: run.kind };
   const named = ownRunId.value === null ? room.value?.shown.state?.run : null;
@@ -140,6 +148,7 @@ function onTournament({ id, state }) {
 function onEvent(name, data, isContinued) {
   if (name === "room") onRoom(data);
   else if (name === "tournament") onTournament(data);
+  else if (name === "teaching") newestTeaching.value = data;
   else applyEvent(name, data, isContinued);
   if (name === "snapshot") refresh().then(refreshResults);
   if (name !== "run" || !ENDED.includes(data.state)) return;
@@ -153,20 +162,22 @@ export async function followRoom() {
   const stream = computed(() => {
     const { state, role } = room.value ?? {};
     // A stranger follows nothing; what a stream tells depends on who has opened it.
-    return state === "ended" || (role === "spectator" && !isProjector) ? "" : role ?? "";
+    if (state === "ended" || (role === "spectator" && !isProjector)) return "";
+    // Phones show the stage where they teach alone.
+    return role ? `${role} ${isProjector || isTeaching.value}` : "";
   });
   effect(() => {
     if (!stream.value) {
       connection.value = "live";
       return undefined;
     }
-    return openEvents(["room", "tournament", ...eventNames()], onEvent, (now) => {
+    const hasPicture = isProjector || untracked(() => isTeaching.value);
+    return openEvents(["room", "teaching", "tournament", ...eventNames()], onEvent, (now) => {
       connection.value = now;
       // The stream does not say why it ended: the room may have, or the seat is gone.
       if (now === "reconnecting") untracked(refresh);
-      // Phones show no stage.
     }, () => ({
-      stream: `${api.eventsOf(code)}?picture=${isProjector}`,
+      stream: `${api.eventsOf(code)}?picture=${hasPicture}`,
       snapshot: roomAddressOf(room.peek()?.code ?? code, "events/snapshot"),
     }));
   });

@@ -5,6 +5,7 @@ import { CURVE, POINT } from "./curves.js";
 import { DISTANCES } from "./distances.js";
 import { NUMBER } from "./number.js";
 import { RUN } from "./run.js";
+import { TEACH } from "./teach.js";
 
 /** @import { FunctionComponent } from "preact" */
 /** @import { CardResults, Classroom } from "../../../../js/types.js" */
@@ -23,7 +24,7 @@ import { RUN } from "./run.js";
  */
 
 /** In the order of their claims. @type {Act[]} */
-export const ACTS = [RUN, CHOICE, NUMBER, POINT, CURVE, DISTANCES];
+export const ACTS = [TEACH, RUN, CHOICE, NUMBER, POINT, CURVE, DISTANCES];
 
 /** What fills the projector; null while the card itself does. @param {Facts} facts */
 export const actOf = (facts) => ACTS.find(({ isOn }) => isOn(facts)) ?? null;

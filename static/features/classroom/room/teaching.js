@@ -1,0 +1,68 @@
+// What the class of a room teaches: its robots, the presses by step, and those of one's own.
+import { effect, signal, untracked } from "@preact/signals";
+import * as api from "../api.js";
+import { connection } from "../../../js/store.js";
+import { code, isTeaching, newestTeaching, room } from "./room.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "../../../js/api.js" */
+/** @import { StepPresses, TeachingState } from "../../../js/types.js" */
+
+/** The teaching of the card that is shown; null until it is known, and on other cards. */
+/** @type {Signal<TeachingState | null>} */
+export const teaching = signal(null);
+/** Step → what was pressed on this page for it, 1 or −1. @type {Signal<Record<number, number>>} */
+export const ownPresses = signal({});
+/** The newest press of this page, which counts them; null before the first. */
+/** @type {Signal<{ value: 1 | -1, number: number } | null>} */
+export const newestPress = signal(null);
+/** Why the newest press does not count; empty if it does. */
+export const pressProblem = signal("");
+
+export async function refreshTeaching() {
+  if (!isTeaching.peek()) return;
+  try {
+    const answer = await api.getTeaching(code);
+    if (answer.taught?.run_id !== teaching.peek()?.taught?.run_id) ownPresses.value = {};
+    teaching.value = answer;
+  } catch {
+    // The next event asks again.
+  }
+}
+
+effect(() => {
+  // Another card, a stop for all, and the reveal: each has more to tell.
+  const { card, state, revealed } = room.value ?? {};
+  const isNew = isTeaching.value && connection.value === "live" && `${card} ${state} ${revealed}` !== "";
+  if (!isTeaching.value) teaching.value = null;
+  if (isNew) untracked(refreshTeaching);
+});
+effect(() => {
+  const event = newestTeaching.value;
+  if (event === null) return;
+  untracked(() => {
+    const known = teaching.peek();
+    if (known === null || event.card !== known.card || event.presses.length === 0) refreshTeaching();
+    else teaching.value = { ...known, presses: [...known.presses, ...event.presses] };
+  });
+});
+
+/** Press + (1) or − (−1). @param {1 | -1} value @param {number} at_s time of the run in the picture of this page */
+export async function press(value, at_s) {
+  const run_id = teaching.peek()?.taught?.run_id;
+  if (!run_id) return;
+  newestPress.value = { value, number: (newestPress.peek()?.number ?? 0) + 1 };
+  try {
+    const { step } = await api.press(code, { run_id, at_s, value });
+    ownPresses.value = { ...ownPresses.peek(), [step]: value };
+    pressProblem.value = "";
+  } catch (error) {
+    pressProblem.value = /** @type {RequestError} */ (error).message;
+  }
+}
+
+/** How many steps the class has praised, and how many it has rebuked. @param {StepPresses[]} presses */
+export const countsOf = (presses) => ({
+  praised: presses.filter(({ value }) => value > 0).length,
+  rebuked: presses.filter(({ value }) => value < 0).length,
+});

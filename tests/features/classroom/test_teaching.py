@@ -1,0 +1,159 @@
+"""A class that teaches a robot over REST: presses, what is refused, and what it has learned."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from app.features.classroom.lesson import read_lesson
+from app.server import create_app
+from app.settings import Settings
+from app.storage.database.opening import open_store
+from hexapods.domain.errors import InvalidInput
+from tests.api.calls import ADDRESS, Api, refused
+from tests.features.classroom.teachers import moments_of
+from tests.features.classroom.test_room_routes import TOKEN, Class
+
+FORM = {"gait": "tripod", "simulator": "kinematic"}
+LESSON: dict[str, Any] = {
+    "title": "Teach",
+    "cards": [
+        {
+            "title": "Teach it",
+            "text": "Press.",
+            "state": {"form": FORM},
+            "teach": {"seconds": 24, "step_s": 0.4},
+        },
+        {"title": "Look", "text": "Only look."},
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
+    settings = Settings(data=tmp_path_factory.mktemp("teaching"), job_niceness=0, token=TOKEN)
+    with ExitStack() as stack:
+        store = stack.enter_context(open_store(settings))
+        client = TestClient(create_app(settings, store), base_url=ADDRESS, follow_redirects=False)
+        yield Class(stack.enter_context(client), stack)
+
+
+def begun(school: Class, code: str) -> str:
+    """Let the class teach; return the id of the training of its robot, which is on the stage."""
+    answer = school.teacher.call("POST", f"/rooms/{code}/teaching")
+    assert answer.status_code == 202, answer.text
+    run_id: str = answer.json()["taught"]["run_id"]
+    school.teacher.until(
+        {"kind": "training", "id": run_id}, lambda now: now["progress"]["done"] > 2
+    )
+    return run_id
+
+
+def pressed(pupil: Api, code: str, run_id: str, at_s: float, value: int = 1) -> Any:
+    body = {"run_id": run_id, "at_s": at_s, "value": value}
+    return pupil.call("POST", f"/rooms/{code}/presses", json=body)
+
+
+def test_a_class_that_praises_steps_forward_teaches_a_walk(school: Class) -> None:
+    code = school.room(LESSON)
+    pupils = [school.joined(code) for _ in range(3)]
+    run_id = begun(school, code)
+    counted, client = 0, school.teacher.client
+    for at_s, reward_m in moments_of(lambda path: client.get(path).json(), code, run_id):
+        for pupil in pupils:
+            answer = pressed(pupil, code, run_id, at_s, 1 if reward_m > 0.005 else -1)
+            counted += answer.status_code == 201
+    view = school.teacher.get(f"/rooms/{code}/teaching")
+    training = school.finished({"kind": "training", "id": run_id})
+    table = {
+        (tuple(entry["state"]), tuple(entry["action"])): entry["value"]
+        for entry in school.teacher.get(f"/trainings/{run_id}/q-table")["values"]
+    }
+
+    assert counted > 60
+    assert view["state"] == "ended"
+    assert max(press["plus"] + press["minus"] for press in view["presses"]) == 3
+    assert sum(len(change["presses"]) for change in training["changes"]) == len(view["presses"])
+    assert min(table.values()) < 0 < max(table.values())
+    assert training["result"]["distance_m"] > 0.1
+    assert view["taught"]["distance_m"] == training["result"]["distance_m"]
+    assert view["rival"]["distance_m"] is not None
+
+
+def test_presses_that_nobody_can_have_meant_are_refused(school: Class) -> None:
+    code = school.room(LESSON)
+    pupil, other = school.joined(code), school.joined(code)
+    refused(pressed(pupil, code, "abc", 0.0), 409, "is taught now; wait")
+    refused(pupil.call("POST", f"/rooms/{code}/teaching"), 403)
+    run_id = begun(school, code)
+    refused(school.teacher.call("POST", f"/rooms/{code}/teaching"), 409, "teaches already")
+    refused(pressed(pupil, code, "abc", 0.0), 409, "robot is taught now")
+    refused(pressed(pupil, code, run_id, 500.0), 409, "not shown yet")
+    refused(pressed(school.pupil(), code, run_id, 0.0), 401)
+    for body in (
+        {"run_id": run_id, "at_s": -1, "value": 1},
+        {"run_id": run_id, "at_s": 1, "value": 0},
+        {"run_id": run_id, "at_s": 1, "value": 10},
+        {"run_id": run_id, "value": 1},
+    ):
+        refused(pupil.call("POST", f"/rooms/{code}/presses", json=body), 422)
+    answers = [pressed(pupil, code, run_id, 500.0) for _ in range(12)]
+    refused(answers[-1], 503, "press faster")
+    # Others of the class press as before.
+    assert pressed(other, code, run_id, 500.0).status_code == 409
+
+    assert school.teacher.call("POST", f"/rooms/{code}/freeze").status_code == 200
+    refused(pressed(other, code, run_id, 0.5), 409, "stopped the class")
+    assert other.get(f"/rooms/{code}/teaching")["state"] == "frozen"
+    school.teacher.until({"kind": "training", "id": run_id}, lambda now: now["state"] == "paused")
+    school.teacher.call("POST", f"/rooms/{code}/freeze", json={"frozen": False})
+    school.teacher.until({"kind": "training", "id": run_id}, lambda now: now["state"] == "running")
+
+    other.call("DELETE", f"/rooms/{code}/me")
+    refused(pressed(other, code, run_id, 0.5), 403)
+    school.show(code, 1)
+    refused(pressed(pupil, code, run_id, 0.5), 403, "ard 1 teaches nothing")
+    refused(pupil.call("GET", f"/rooms/{code}/teaching"), 404, "ard 1 teaches nothing")
+    ended = school.teacher.look({"kind": "training", "id": run_id})
+    assert ended["state"] in ("running", "stopped")
+    refused(school.teacher.call("POST", f"/rooms/{code}/teaching"), 403, "teaches nothing")
+
+
+def test_both_robots_race_at_the_reveal_and_distances_are_told_then(school: Class) -> None:
+    code = school.room(LESSON)
+    pupil = school.joined(code)
+    assert pupil.get(f"/rooms/{code}/teaching")["state"] == "ready"
+    run_id = begun(school, code)
+    school.teacher.call("DELETE", f"/rooms/{code}/teaching")
+    school.teacher.until({"kind": "training", "id": run_id}, lambda now: now["state"] == "stopped")
+    assert pupil.get(f"/rooms/{code}/teaching")["taught"]["distance_m"] is None
+    school.teacher.call("POST", f"/rooms/{code}/reveal")
+    revealed = pupil.get(f"/rooms/{code}/teaching")
+    while revealed["race_id"] is None:
+        revealed = pupil.get(f"/rooms/{code}/teaching")
+    race = school.teacher.finished({"kind": "race", "id": revealed["race_id"]})
+
+    assert [lane["training_id"] for lane in race["config"]["lanes"]] == [
+        revealed["taught"]["run_id"],
+        revealed["rival"]["run_id"],
+    ]
+    assert revealed["taught"]["distance_m"] is not None
+    assert revealed["rival"]["distance_m"] is not None
+
+
+def test_a_card_that_teaches_can_be_started_when_it_is_stored(school: Class) -> None:
+    def lesson(**card: Any) -> dict[str, Any]:
+        return {"title": "T", "cards": [{"text": "Press.", "teach": {}, **card}]}
+
+    with pytest.raises(InvalidInput, match="either runs something or teaches"):
+        read_lesson(lesson(go="training"))
+    with pytest.raises(InvalidInput, match="teach"):
+        read_lesson(lesson(teach={"seconds": 5}))
+    with pytest.raises(InvalidInput, match=r"field 'pace'.*agent, rival, seconds, step_s"):
+        read_lesson(lesson(teach={"pace": 1}))
+    answer = school.teacher.call(
+        "POST", "/lessons", json=lesson(state={"form": {"robot": "no robot"}})
+    )
+    refused(answer, 422, "0.state.form")
