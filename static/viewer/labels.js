@@ -9,7 +9,7 @@
   "use strict";
 
   const EDGE_PX = 4;
-  const GAP_PX = 2;
+  const GAP_PX = 4;
   const STEM_FROM_PX = 8;
   /** By how much of its width a label gives way to the side, what that costs of its distance, and to be below. */
   const SHIFTS = [0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9];

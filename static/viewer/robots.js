@@ -8,19 +8,21 @@
   const LEGS = /\/legs((?:-\d+)+)$/;
   const TORSO = /\/torso$/;
   /** Translucent robots of another run. Those of evaluations stay where they came, far behind in the end. */
-  const GHOST = /\/ghost-robots\/\d+\/ghost-/;
-  /** What links are thicker than the line through them, of the robot's reach. */
-  const THICKNESS = 1.07;
+  const GHOST = /\/(?:ghost-robots|robots2?-evaluated)\/\d+\/ghost-/;
+  /** Half of what a link is thick, of the robot's reach. */
+  const THICKNESS = 0.06;
   const CORNERS = 8;
-  /** Half of the thickness of a link [m]. */
-  const THICK_M = 0.02;
+  /** Half of what a link is thick, of the torso's radius. */
+  const THICK = 0.2;
 
   /** What `robots` tells; null when something has moved since. */
   let known = null;
   /** Name of a batch → {legs, isTorso, tip, radius, top, positions, wxyzs, scales}. */
   const batches = new Map();
-  /** The largest extents of the robots so far, which all are of one kind; null before they are measured. */
-  let extents = null;
+  /** How far each end of a link has been from the torso, and over the feet: robots of a scene are of one kind. */
+  const reaches = new Map();
+  /** The greatest height of a torso over the feet. */
+  let standing = 0;
 
   const floats = (bytes) => (bytes instanceof Float32Array ? bytes
     : new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength)));
@@ -51,7 +53,10 @@
     const isTorso = TORSO.test(name);
     if (!legs && !isTorso && !GHOST.test(name)) return;
     const points = floats(vertices);
-    if (isTorso) extents = null;
+    if (isTorso) {
+      reaches.clear();
+      standing = 0;
+    }
     batches.set(name, {
       legs, isTorso, tip: tipOf(points), ...reachOf(points), positions: floats(batched_positions),
       wxyzs: floats(batched_wxyzs), scales: batched_scales ? floats(batched_scales) : null,
@@ -87,49 +92,50 @@
     return { index, origin, tip: tip.map((coordinate, axis) => coordinate + origin[axis]) };
   }).filter(({ index }) => batch.scales === null || batch.scales[index] > 0);
 
-  /** All links: {name of the batch, lane, leg, origin, tip}; of a torso the leg is null. */
+  /** All links: {name of the batch, place of the link in it, lane, leg, origin, tip}; of a torso the leg is null. */
   const links = () => [...batches].flatMap(([name, batch]) => (batch.legs || batch.isTorso
     ? instances(batch).map(({ index, origin, tip }) => {
       const [count, leg] = batch.legs ? [batch.legs.length, batch.legs[index % batch.legs.length]] : [1, null];
-      return { name, lane: Math.floor(index / count), leg, origin, tip };
+      return { name, place: index % count, lane: Math.floor(index / count), leg, origin, tip };
     }) : []));
 
   // ---- the room that they take
 
-  const grown = (before, measured) => Object.fromEntries(
-    Object.entries(measured).map(([name, value]) => [name, Math.max(before?.[name] ?? 0, value)]));
+  const grown = (before, values) =>
+    ({ least: values.map((value, axis) => Math.min(value, before?.least[axis] ?? value)),
+      most: values.map((value, axis) => Math.max(value, before?.most[axis] ?? value)) });
 
-  /** Extents of a robot about its torso: radius of its feet, radius and height of its knees, and its height. */
-  const measure = ({ at: [x, y, z], ends, low }) => {
-    const around = ([a, b]) => Math.hypot(a - x, b - y);
-    const isUp = ([, , height]) => height - low > 0.35 * (z - low);
-    const torsos = [...batches.values()].filter(({ isTorso }) => isTorso);
-    const [radius, top] = ["radius", "top"].map((part) => Math.max(0, ...torsos.map((batch) => batch[part])));
-    const knees = ends.filter(isUp);
-    return {
-      radius,
-      feet: THICKNESS * Math.max(radius, ...ends.map(around)),
-      knees: THICKNESS * Math.max(radius, ...knees.map(around)),
-      kneeHeight: Math.max(z - low, ...knees.map(([, , height]) => height - low)),
-      height: z - low + top,
-    };
+  /** Take where the ends of a robot's links are from its torso. */
+  const stretch = ({ at, ends, low }) => {
+    for (const [name, [x, y, z]] of ends) reaches.set(name, grown(reaches.get(name), [x - at[0], y - at[1], z - low]));
+    standing = Math.max(standing, at[2] - low);
   };
 
-  /** The robots by lane: {lane, at: place of the torso, ends of links, low: height of the lowest foot, and extents}. */
+  /** The robots by lane: {lane, at: place of the torso, ends of links by name, low: height of the lowest foot}. */
   const robots = () => (known ??= measured());
   const measured = () => {
     const lanes = new Map();
-    for (const { lane, leg, origin, tip } of links()) {
-      const robot = lanes.get(lane) ?? { lane, at: null, ends: [] };
+    for (const { name, place, lane, leg, origin, tip } of links()) {
+      const robot = lanes.get(lane) ?? { lane, at: null, lines: [], ends: new Map() };
       if (leg === null) robot.at = origin;
-      else robot.ends.push(origin, tip);
+      else {
+        robot.lines.push([origin, tip]);
+        robot.ends.set(`${name} ${place}`, tip);
+      }
       lanes.set(lane, robot);
     }
     const shown = [...lanes.values()].filter(({ at }) => at !== null).sort((a, b) => a.lane - b.lane);
-    for (const robot of shown) robot.low = Math.min(robot.at[2], ...robot.ends.map(([, , z]) => z));
-    // Of a robot that falls or steps out, what it needed once is kept: the picture does not breathe with its legs.
-    for (const robot of shown) extents = grown(extents, measure(robot));
-    return shown.map(({ lane, at, ends, low }) => ({ lane, at, ends, low, ...extents }));
+    for (const robot of shown) robot.low = Math.min(robot.at[2], ...[...robot.ends.values()].map(([, , z]) => z));
+    // What a robot has needed once is kept: the picture does not breathe with its legs.
+    shown.forEach(stretch);
+    return shown;
+  };
+
+  /** Radius of the torso, and the height of its top, the antenna, over its middle. */
+  const torso = () => {
+    const torsos = [...batches.values()].filter(({ isTorso }) => isTorso);
+    const [radius, top] = ["radius", "top"].map((part) => Math.max(0, ...torsos.map((batch) => batch[part])));
+    return { radius, top };
   };
 
   const circle = ([x, y], radius, z) => Array.from({ length: CORNERS }, (_, n) => {
@@ -137,10 +143,18 @@
     return [x + radius * Math.cos(angle), y + radius * Math.sin(angle), z];
   });
 
-  /** Points around a robot. */
-  const pointsOf = ({ at, low, feet, knees, kneeHeight, height }) => [
-    ...circle(at, feet, low), ...circle(at, knees, low + kneeHeight), [at[0], at[1], low + height],
-  ];
+  /** Points around what a robot has needed so far, as one of its kind: corners around each end of a link. */
+  const pointsOf = ({ at, low }) => {
+    const { radius, top } = torso();
+    const reach = Math.max(radius, ...[...reaches.values()].flatMap(({ least, most }) =>
+      [least[0], least[1], most[0], most[1]].map(Math.abs)));
+    const room = THICKNESS * reach;
+    const corners = [...reaches.values()].flatMap(({ least, most }) =>
+      [least[0] - room, most[0] + room].flatMap((x) => [least[1] - room, most[1] + room].flatMap((y) =>
+        [least[2] - room, most[2] + room].map((z) => [at[0] + x, at[1] + y, low + Math.max(0, z)]))));
+    const height = Math.max(standing, at[2] - low);
+    return [...corners, ...circle(at, radius, low + height), [at[0], at[1], low + height + top]];
+  };
 
   /** Points of the translucent robots. */
   const ghostPoints = () => [...batches].flatMap(([name, batch]) =>
@@ -173,17 +187,15 @@
   };
 
   /** Boxes around the links of each robot, its torso and its antenna: [{lane, boxes}]. */
-  const outlines = () => robots().map(({ lane, at, ends, radius, low, height }) => {
+  const outlines = () => robots().map(({ lane, at, lines }) => {
     const [x, y, z] = at;
-    const middle = projected(at);
-    const beside = projected([x + THICK_M, y, z]);
-    const room_px = middle && beside ? Math.hypot(beside.x - middle.x, beside.y - middle.y) : 0;
-    const pairs = Array.from({ length: ends.length / 2 }, (_, n) => [ends[2 * n], ends[2 * n + 1]]);
+    const { radius, top } = torso();
+    const [middle, beside] = [projected(at), projected([x + radius, y, z])];
+    const room_px = middle && beside ? THICK * Math.hypot(beside.x - middle.x, beside.y - middle.y) : 0;
     const boxesOf = (shapes, room) => shapes.map((points) => points.map(projected))
       .filter((points) => points.every((point) => point !== null)).map((points) => boxAround(points, room));
-    const antenna = [at, [x, y, low + height]];
-    const solid = boxesOf([...pairs, circle(at, radius, z)], room_px);
-    return { lane, boxes: [...solid, ...boxesOf([antenna], room_px / 2)] };
+    const solid = boxesOf([...lines, circle(at, radius, z)], room_px);
+    return { lane, boxes: [...solid, ...boxesOf([[at, [x, y, z + top]]], room_px / 2)] };
   });
 
   window.hexapodsViewer = {

@@ -7,17 +7,17 @@
   const RAD = Math.PI / 180;
   /** By shot the angles that the viewer chooses from: azimuth, elevation, field of view from top to bottom. */
   const WIDE = {
-    start: [[155, 10, 28], [25, 14, 28], [90, 12, 30], [0, 60, 30]],
-    race: [[28, 24, 26], [152, 16, 26], [80, 16, 28], [0, 60, 30]],
-    finish: [[30, 18, 22], [150, 16, 24], [85, 14, 26], [0, 60, 28]],
+    start: [[143, 13, 30], [32, 14, 30], [90, 12, 30], [0, 60, 30]],
+    race: [[30, 20, 30], [145, 16, 30], [90, 16, 30], [0, 60, 30]],
+    finish: [[30, 18, 22], [148, 16, 24], [90, 14, 26], [0, 60, 28]],
     // From the left: on the right of the learner is the lane of its tests.
     practice: [[-35, 22, 30], [-145, 16, 30], [-90, 10, 30], [0, 60, 30]],
     close: [[35, 22, 30], [145, 16, 30], [90, 10, 30], [0, 60, 30]],
   };
   /** In a picture that is higher than wide the track runs across. */
   const TALL = {
-    start: [[105, 38, 30], [75, 38, 30], [20, 45, 34], [90, 72, 30]],
-    race: [[75, 38, 30], [105, 34, 30], [20, 45, 34], [90, 72, 30]],
+    start: [[108, 36, 32], [75, 36, 30], [20, 45, 34], [90, 72, 30]],
+    race: [[77, 34, 30], [105, 34, 30], [20, 45, 34], [90, 72, 30]],
     finish: [[75, 34, 26], [105, 34, 26], [20, 45, 30], [90, 72, 28]],
     practice: [[-35, 30, 36], [-145, 26, 36], [-90, 14, 36], [-90, 70, 36]],
     close: [[35, 30, 36], [145, 26, 36], [90, 14, 36], [90, 70, 36]],
@@ -28,6 +28,10 @@
   /** Moments of inertia across the lanes from which on one side has the robots that lag [m²]. */
   const LEVEL = 0.01;
   const SMALL_PX = 500;
+  /** Between these aspects a picture has its robots more from the side the narrower it is, by as much at most [°]. */
+  const [NARROW, FULL, MOST_TURN] = [4 / 3, 16 / 9, 14];
+  /** From above or right from the side it has them as they are. */
+  const [STEEP, SIDEWAYS] = [40, 25];
   const LEAST_SHARE = 0.2;
 
   /** The number of angles of a shot. */
@@ -38,6 +42,13 @@
     const mean = (axis) => places.reduce((sum, place) => sum + place[axis], 0) / (places.length || 1);
     const [x, y] = [mean(0), mean(1)];
     return places.reduce((sum, place) => sum + (place[0] - x) * (y - place[1]), 0) < -LEVEL ? -1 : 1;
+  };
+
+  const turned = (azimuth, elevation, aspect) => {
+    if (aspect < 1 || elevation > STEEP || Math.abs(Math.abs(azimuth) - 90) < SIDEWAYS) return azimuth;
+    const share = Math.min(1, Math.max(0, (FULL - aspect) / (FULL - NARROW)));
+    const towards = Math.abs(azimuth) < 90 ? 1 : -1;
+    return Math.sign(azimuth) * (Math.abs(azimuth) + towards * share * MOST_TURN);
   };
 
   /**
@@ -51,7 +62,7 @@
     const [azimuth, elevation, fov] = isOfMany && places.length >= MANY ? [...FOR_MANY, plan[2]] : plan;
     // Seen from the front, those hide others that lead.
     const side = sideOf(Math.abs(azimuth) > 90 ? places.map(([x, y]) => [x, -y]) : places);
-    return { azimuth: side * azimuth, elevation, fov };
+    return { azimuth: side * turned(azimuth, elevation, width / height), elevation, fov };
   };
 
   /** What stays free around the robots [px]; `label` is the height of the labels over them. */

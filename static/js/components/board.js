@@ -334,7 +334,7 @@ function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
   const robots = lanes.map((lane, n) =>
     [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
-  const choices = [["directed", "Directed camera"], ...robots, ["free", "Free camera"]];
+  const choices = [["directed", "All robots"], ...robots, ["free", "Free camera"]];
   const target = page.camera.value;
   if (!choices.some(([choice]) => choice === target)) choices.push([target, `Follow lane ${target}`]);
   return html`

@@ -263,7 +263,7 @@ function StageLabels() {
   return html`
     <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
       <${SceneChips} />
-      ${scene.value?.action_values && (isAtLeast("try") || !isTimedOut.value) && html`
+      ${scene.value?.action_values && hasReadableGrid() && html`
         <p class="chip legend" aria-label=${GRID_COLOURS}>
           worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried
         </p>
@@ -271,6 +271,10 @@ function StageLabels() {
     </div>
   `;
 }
+
+/** Whether the cells of the foot grid are large enough to be read: not where a race has all its robots in view. */
+const hasReadableGrid = () => ["practice", "close", null].includes(directions.value.shot)
+  && (isAtLeast("try") || !isTimedOut.value);
 
 /** @param {HTMLElement} labels */
 function measureChips(labels) {
