@@ -7,8 +7,10 @@
   /** Batches of links of legs are named by the legs of their instances: ".../legs-1-2-3-4-5-6". */
   const LEGS = /\/legs((?:-\d+)+)$/;
   const TORSO = /\/torso$/;
-  /** Translucent robots of another run. Those of evaluations stay where they came, far behind in the end. */
+  /** Translucent robots: of another run, and of the newest test of a practice. */
   const GHOST = /\/(?:ghost-robots|robots2?-evaluated)\/\d+\/ghost-/;
+  /** That of a test stays where it came, and the learner walks on: beyond this it is left out of the picture. */
+  const NEAR_M = 1;
   /** Half of what a link is thick, of the robot's reach. */
   const THICKNESS = 0.06;
   const CORNERS = 8;
@@ -156,9 +158,12 @@
     return [...corners, ...circle(at, radius, low + height), [at[0], at[1], low + height + top]];
   };
 
-  /** Points of the translucent robots. */
-  const ghostPoints = () => [...batches].flatMap(([name, batch]) =>
-    (GHOST.test(name) ? instances(batch).flatMap(({ origin, tip }) => [origin, tip]) : []));
+  /** Points of the translucent robots that are near one of the others. */
+  const ghostPoints = () => {
+    const isNear = ([x, y]) => robots().some(({ at }) => Math.hypot(at[0] - x, at[1] - y) < NEAR_M);
+    return [...batches].flatMap(([name, batch]) => (GHOST.test(name)
+      ? instances(batch).filter(({ origin }) => isNear(origin)).flatMap(({ origin, tip }) => [origin, tip]) : []));
+  };
 
   /** The scene node in whose frame the poses are; null while there are no robots. */
   const root = () => {

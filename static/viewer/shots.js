@@ -8,7 +8,7 @@
   /** By shot the angles that the viewer chooses from: azimuth, elevation, field of view from top to bottom. */
   const WIDE = {
     start: [[143, 13, 30], [32, 14, 30], [90, 12, 30], [0, 60, 30]],
-    race: [[30, 20, 30], [145, 16, 30], [90, 16, 30], [0, 60, 30]],
+    race: [[34, 18, 30], [145, 16, 30], [90, 16, 30], [0, 60, 30]],
     finish: [[30, 18, 22], [148, 16, 24], [90, 14, 26], [0, 60, 28]],
     // From the left: on the right of the learner is the lane of its tests.
     practice: [[-35, 22, 30], [-145, 16, 30], [-90, 10, 30], [0, 60, 30]],
@@ -29,7 +29,7 @@
   const LEVEL = 0.01;
   const SMALL_PX = 500;
   /** Between these aspects a picture has its robots more from the side the narrower it is, by as much at most [°]. */
-  const [NARROW, FULL, MOST_TURN] = [4 / 3, 16 / 9, 14];
+  const [NARROW, FULL, MOST_TURN] = [4 / 3, 16 / 9, 11];
   /** From above or right from the side it has them as they are. */
   const [STEEP, SIDEWAYS] = [40, 25];
   const LEAST_SHARE = 0.2;

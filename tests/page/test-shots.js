@@ -79,8 +79,8 @@ test("the camera is on the side of the robots that lag, of the front too, and on
 test("a picture that is higher than wide has angles of its own, and many robots are seen from higher up", () => {
   const of = (/** @type {number[]} */ [width, height], count = 3) =>
     shots.directionOf("race", 0, { width, height }, Array.from({ length: count }, (_, n) => [n, 0]));
-  assert.deepEqual(of([1280, 720]), { azimuth: 30, elevation: 20, fov: 30 });
-  assert.deepEqual(of([800, 600]), { azimuth: 44, elevation: 20, fov: 30 });
+  assert.deepEqual(of([1280, 720]), { azimuth: 34, elevation: 18, fov: 30 });
+  assert.deepEqual(of([800, 600]), { azimuth: 45, elevation: 18, fov: 30 });
   assert.deepEqual(of([390, 700]), { azimuth: 77, elevation: 34, fov: 30 });
   assert.deepEqual(of([1280, 720], 8), { azimuth: 40, elevation: 22, fov: 30 });
 });
