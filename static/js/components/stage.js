@@ -253,13 +253,7 @@ const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is wor
 
 function StageLabels() {
   const labels = useRef(/** @type {HTMLElement | null} */ (null));
-  const measure = () => measureChips(/** @type {HTMLElement} */ (labels.current));
-  // After the page is painted: before, the browser would lay it out twice.
-  useEffect(measure);
-  useEffect(() => {
-    addEventListener("resize", measure);
-    return () => removeEventListener("resize", measure);
-  }, []);
+  useEffect(() => followCovered(/** @type {HTMLElement} */ (labels.current?.parentElement)), []);
   return html`
     <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
       <${SceneChips} />
@@ -276,15 +270,33 @@ function StageLabels() {
 const hasReadableGrid = () => ["practice", "close", null].includes(directions.value.shot)
   && (isAtLeast("try") || !isTimedOut.value);
 
-/** @param {HTMLElement} labels */
-function measureChips(labels) {
-  const picture = /** @type {HTMLElement} */ (labels.parentElement).getBoundingClientRect();
-  const boxes = [...labels.querySelectorAll(".chip")].map((chip) => chip.getBoundingClientRect())
-    .filter(({ width }) => width > 0)
-    .map(({ left, top, right, bottom }) => ({
-      left: left - picture.left, top: top - picture.top, right: right - picture.left, bottom: bottom - picture.top,
-    }));
-  if (JSON.stringify(boxes) !== JSON.stringify(covered.peek())) covered.value = boxes;
+/** What lies over the picture, and stays there. */
+const COVERING = ".chip, .stage-notes > *, .directed-camera, .away-note";
+
+/**
+ * Measure what lies over the picture whenever that or the picture's size has changed.
+ * @param {HTMLElement} picture
+ */
+function followCovered(picture) {
+  /** @type {number | undefined} */
+  let due;
+  const measure = () => {
+    due = undefined;
+    const frame = picture.getBoundingClientRect();
+    const boxes = [...picture.querySelectorAll(COVERING)].map((element) => element.getBoundingClientRect())
+      .filter(({ width }) => width > 0)
+      .map(({ left, top, right, bottom }) => ({
+        left: left - frame.left, top: top - frame.top, right: right - frame.left, bottom: bottom - frame.top,
+      }));
+    if (JSON.stringify(boxes) !== JSON.stringify(covered.peek())) covered.value = boxes;
+  };
+  // Before the browser paints it would be laid out twice.
+  const soon = () => (due ??= requestAnimationFrame(measure));
+  const [ofSize, ofContent] = [new ResizeObserver(soon), new MutationObserver(soon)];
+  ofSize.observe(picture);
+  ofContent.observe(picture, { childList: true, subtree: true, characterData: true });
+  soon();
+  return () => [ofSize, ofContent].forEach((observer) => observer.disconnect());
 }
 
 /** Titles of chips that have one. @type {Record<string, string>} */
