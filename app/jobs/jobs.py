@@ -33,7 +33,6 @@ from app.storage.run import (
     PAUSED,
     RESUMABLE,
     RUNNING,
-    TABLE,
     AnyRun,
     Content,
     IdempotencyKey,
@@ -152,15 +151,17 @@ class Jobs:
         """
         return self._enqueue(start.runs(self._store, self.new_id), key)
 
-    def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
-        """Store an imported training, which ended elsewhere, and publish it.
+    def keep(
+        self, run: Run, artifacts: Mapping[str, bytes], key: IdempotencyKey | None = None
+    ) -> Run:
+        """Store a run that no job computes, since it ended elsewhere, and publish it.
 
         Args:
-            run: the training, with its final state.
-            table: its table, as a file.
+            run: the run, with its final state.
+            artifacts: its files, by name.
             key: idempotency key of the request, stored with the run.
         """
-        content = Content(artifacts={TABLE: table})
+        content = Content(artifacts=artifacts)
         (stored,) = self._store.add([(run, content)], self.new_id, key)
         self._publish(stored)
         return stored

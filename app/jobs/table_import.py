@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import check_training
 from app.storage.imported_tables import checked_table
-from app.storage.run import IdempotencyKey, Run
+from app.storage.run import TABLE, IdempotencyKey, Run
 from hexapods.domain.text import check_name
 from hexapods.runs import tables
 from hexapods.runs.results import TrainingResult
@@ -54,4 +54,4 @@ def import_table(
         result=TrainingResult(distance_m=None, greedy_distance_m=greedy, q_table_sha256=digest),
         ended_at=datetime.now(UTC),
     )
-    return jobs.keep(run, data, key)
+    return jobs.keep(run, {TABLE: data}, key)

@@ -415,6 +415,14 @@ export interface CardResultsView {
    * answer that the lesson gives; null before the reveal, but for a teacher.
    */
   answer: number | string | null;
+  /**
+   * number of finished runs that a projector does not tell yet, as the phones of their participants still show them.
+   */
+  on_their_way: number;
+  /**
+   * race of the best, the median and the last robot; null before the reveal.
+   */
+  race: ClassRaceView | null;
 }
 /**
  * A participant's part of a card's results.
@@ -431,6 +439,10 @@ export interface ResultEntry {
    * score of the prediction; participants get it after the reveal.
    */
   score: Score | null;
+  /**
+   * of the question after the lesson, 1 if the participant was wrong before and is right now, -1 if it is the other way round, else 0; null unless both are answered, and for others before the reveal.
+   */
+  gain: (-1 | 0 | 1) | null;
   run: RunOutcome | null;
 }
 /**
@@ -519,6 +531,23 @@ export interface IntervalView {
   iqm_m: number;
   low_m: number | null;
   high_m: number | null;
+}
+/**
+ * The race of a card's best, median and last robot.
+ */
+export interface ClassRaceView {
+  /**
+   * id of the race.
+   */
+  run_id: string;
+  /**
+   * seeds of its lanes, from left to right: the best, then the median, then the last.
+   */
+  seeds: number[];
+  /**
+   * number of robots among which they are: those that walk alike, of which most do.
+   */
+  of: number;
 }
 /**
  * The texts of a card as HTML: of the card, of its question, and of what is revealed.
@@ -2276,6 +2305,10 @@ export interface RoomEvent {
    */
   started: number;
   /**
+   * whether the card asks what is known before the lesson, or after it; null for cards of the lesson.
+   */
+  knowledge: ("before" | "after") | null;
+  /**
    * id of the run on its stage.
    */
   spotlight: string | null;
@@ -2606,6 +2639,35 @@ export interface ImportedLeg {
    * name of its foot: of a geom, a site, or a body or link; fit for `Choices.feet`.
    */
   foot: string;
+}
+/**
+ * The gain of a class, over the participants who have answered before and after the lesson.
+ */
+export interface GainView {
+  /**
+   * number of these participants.
+   */
+  pairs: number;
+  /**
+   * number of them who were right.
+   */
+  right_before: number;
+  /**
+   * number of them who were right.
+   */
+  right_after: number;
+  /**
+   * share who were right after the lesson, less the share before it.
+   */
+  gain: number;
+  /**
+   * its 95 % interval, a bootstrap over participants; null below three.
+   */
+  low: number | null;
+  /**
+   * its 95 % interval, a bootstrap over participants; null below three.
+   */
+  high: number | null;
 }
 /**
  * Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
@@ -2969,6 +3031,39 @@ export interface GivenReveal {
   answer?: number | string | null;
 }
 /**
+ * A question about what a lesson teaches, which is asked before it and after it.
+ */
+export interface GivenKnowledgeQuestion {
+  /**
+   * of answer: a text of the choices, a number, a point [x, y] on a chart, or a curve, a list of points.
+   */
+  kind: "choice" | "number" | "point" | "curve";
+  /**
+   * the question, in Markdown.
+   */
+  text: string;
+  /**
+   * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
+   */
+  choices?: string[];
+  /**
+   * between which a number is.
+   */
+  minimum?: number | null;
+  /**
+   * between which a number is.
+   */
+  maximum?: number | null;
+  /**
+   * of the number; `m` and `cm` are compared with distances.
+   */
+  unit?: string | null;
+  /**
+   * the right answer: one of the choices, or a number.
+   */
+  right: number | string;
+}
+/**
  * A lesson.
  */
 export interface GivenLesson {
@@ -2981,9 +3076,25 @@ export interface GivenLesson {
    */
   language?: string;
   /**
+   * how long it takes a class; null where its author does not say.
+   */
+  minutes?: number | null;
+  /**
+   * for whom it is, such as "from 12".
+   */
+  ages?: string | null;
+  /**
    * what is learned, each a line of plain text.
    */
   aims?: string[];
+  /**
+   * question that a room asks before the first card, to measure what the class gains.
+   */
+  before?: GivenKnowledgeQuestion | null;
+  /**
+   * question that it asks after the last card; by default that of `before` again.
+   */
+  after?: GivenKnowledgeQuestion | null;
   /**
    * its pages, in order.
    *
@@ -3039,6 +3150,39 @@ export interface Interval95 {
 export interface JoinedView {
   name: string;
   seed: number;
+}
+/**
+ * A question about what a lesson teaches, which is asked before it and after it.
+ */
+export interface KnowledgeQuestion {
+  /**
+   * of answer: a text of the choices, a number, a point [x, y] on a chart, or a curve, a list of points.
+   */
+  kind: "choice" | "number" | "point" | "curve";
+  /**
+   * the question, in Markdown.
+   */
+  text: string;
+  /**
+   * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
+   */
+  choices: string[];
+  /**
+   * between which a number is.
+   */
+  minimum: number | null;
+  /**
+   * between which a number is.
+   */
+  maximum: number | null;
+  /**
+   * of the number; `m` and `cm` are compared with distances.
+   */
+  unit: string | null;
+  /**
+   * the right answer: one of the choices, or a number.
+   */
+  right: number | string;
 }
 /**
  * Value of a landing, which is the cell of each pair when a step has ended.
@@ -3114,7 +3258,19 @@ export interface ListedLesson {
   id: string;
   title: string;
   language: string;
+  /**
+   * how long it takes a class, if its author says so.
+   */
+  minutes: number | null;
+  /**
+   * for whom it is.
+   */
+  ages: string | null;
   aims: string[];
+  /**
+   * whether a question is asked before it and after it.
+   */
+  has_knowledge_question: boolean;
   /**
    * number of its cards.
    */
@@ -3134,9 +3290,25 @@ export interface LessonView {
    */
   language: string;
   /**
+   * how long it takes a class; null where its author does not say.
+   */
+  minutes: number | null;
+  /**
+   * for whom it is, such as "from 12".
+   */
+  ages: string | null;
+  /**
    * what is learned, each a line of plain text.
    */
   aims: string[];
+  /**
+   * question that a room asks before the first card, to measure what the class gains.
+   */
+  before: KnowledgeQuestion | null;
+  /**
+   * question that it asks after the last card; by default that of `before` again.
+   */
+  after: KnowledgeQuestion | null;
   /**
    * its pages, in order.
    *
@@ -4179,6 +4351,10 @@ export interface ReplayView {
  */
 export interface ResultsView {
   code: string;
+  /**
+   * what the class gains by the lesson; null before the question after it is revealed, but for a teacher.
+   */
+  gain: GainView | null;
   cards: CardResultsView[];
 }
 /**
@@ -4311,6 +4487,10 @@ export interface RoomView {
    * number of participants who have started a run on it.
    */
   started: number;
+  /**
+   * whether the card asks what is known before the lesson, or after it; null for cards of the lesson.
+   */
+  knowledge: ("before" | "after") | null;
   /**
    * id of the run on its stage.
    */

@@ -34,6 +34,7 @@ export type {
   GaitAnalysis,
   GaitFigures,
   GaitLane,
+  GainView as Gain,
   GaitOption as Gait,
   Interval95 as Interval,
   JoinedView as Joined,

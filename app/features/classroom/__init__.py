@@ -9,7 +9,8 @@
   participants by their cookies, with `room_runs` their runs, and who may see them; `room_stages`
   opens a stage for each open room, with the roles and sessions of the server's first one.
 - `questions` has the kinds of questions: what an answer is, and how it is scored; `card_starts`
-  makes what a card runs, and `what_ifs` answers what it asks; `results` are those of a room, and
+  makes what a card runs, and `what_ifs` answers what it asks; `results` are those of a room,
+  with the `gain` of the class; `class_race` lets its best, median and last robot race together;
   `names` draws codes and names.
 - `teach` is the part of a card on which a class teaches a robot, `teaching` its service, and
   `press_book` adds up the presses of a class by step.

@@ -53,15 +53,16 @@ class ParticipantAccess(Access):
     """Access for participants of the room `code` of the path.
 
     Attributes:
-        action: what the card that is shown must allow; to leave is always allowed.
+        action: what the card that is shown must allow; to leave, and to tell what was watched,
+            is always allowed.
     """
 
-    action: CardAction | Literal["leave"]
+    action: CardAction | Literal["leave", "watch"]
     is_for_operators: bool = False
 
 
 @cache
-def participant(action: CardAction | Literal["leave"]) -> ParticipantAccess:
+def participant(action: CardAction | Literal["leave", "watch"]) -> ParticipantAccess:
     """Return the access of an action of participants in their room."""
     return ParticipantAccess(name=f"participant: {action}", action=action)
 
@@ -118,7 +119,7 @@ class Participant:
 
     def _why_not(self, access: ParticipantAccess, room: Room) -> str | None:
         """Return why the card that a room shows forbids an action; None if it allows it."""
-        if access.action == "leave":
+        if access.action == "leave" or access.action == "watch":  # noqa: PLR1714 - for its type
             return None
         self.asks_what_if = access.action == "run" and room.shown.go == "what-if"
         return room.refusal(access.action)

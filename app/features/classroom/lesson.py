@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, Literal
 
-from annotated_types import MaxLen, MinLen
+from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import Field, TypeAdapter, ValidationError
 
 from app.answer import Answer
@@ -20,7 +20,15 @@ from app.features.classroom.markdown import (
     check_markdown,
 )
 from app.features.classroom.page_state import PageState, Tab
-from app.features.classroom.questions import MAX_CHOICES, Ask, Number, check_question, check_right
+from app.features.classroom.questions import (
+    MAX_CHOICES,
+    Ask,
+    KnowledgeQuestion,
+    Number,
+    check_knowledge,
+    check_question,
+    check_right,
+)
 from app.features.classroom.teach import Teach
 from app.storage.json_text import is_finite
 from hexapods.domain.errors import InvalidInput, UnknownName
@@ -34,6 +42,9 @@ GIVEN_LESSON: dict[str, Any] = {"$ref": _GIVEN_REFERENCE.format(model="Lesson")}
 MAX_CARDS = 60
 MAX_AIMS = 12
 MAX_MAY = 30
+MIN_MINUTES, MAX_MINUTES = 5, 240
+_ONCE_MORE = "Answer alone. The same question comes again at the end of the lesson."
+_AGAIN = "The question of the beginning, once more."
 LANGUAGE = r"^[a-z]{2,3}(-[A-Za-z0-9]{2,8}){0,3}$"
 Go = Literal["training", "race", "what-if"]
 
@@ -112,21 +123,57 @@ class Lesson(Record):
     Attributes:
         title: in plain text.
         language: of its texts, such as `en` or `de-AT`.
+        minutes: how long it takes a class; null where its author does not say.
+        ages: for whom it is, such as "from 12".
         aims: what is learned, each a line of plain text.
+        before: question that a room asks before the first card, to measure what the class gains.
+        after: question that it asks after the last card; by default that of `before` again.
         cards: its pages, in order.
     """
 
     title: Title
     language: Annotated[str, MaxLen(40), Field(pattern=LANGUAGE)] = "en"
+    minutes: Annotated[int, Ge(MIN_MINUTES), Le(MAX_MINUTES)] | None = None
+    ages: Title | None = None
     aims: Annotated[tuple[Title, ...], MaxLen(MAX_AIMS)] = ()
+    before: KnowledgeQuestion | None = None
+    after: KnowledgeQuestion | None = None
     cards: Annotated[tuple[Card, ...], MinLen(1), MaxLen(MAX_CARDS)]
 
+    @property
+    def deck(self) -> tuple[Card, ...]:
+        """The cards as a room shows them, between the questions before and after the lesson."""
+        if self.before is None:
+            return self.cards
+        is_english = self.language.partition("-")[0] == "en"
+        first, last = self.before, self.after or self.before
+        return (
+            Card(
+                title="Before the lesson" if is_english else None,
+                text=_ONCE_MORE if is_english and self.after is None else "",
+                may={},
+                ask=first.ask,
+            ),
+            *self.cards,
+            Card(
+                title="After the lesson" if is_english else None,
+                text=_AGAIN if is_english and self.after is None else "",
+                may={},
+                ask=last.ask,
+                reveal=Reveal(answer=last.right),
+            ),
+        )
 
-CardNumber = Annotated[int, Field(ge=0, le=MAX_CARDS - 1)]
+
+LAST_CARD = MAX_CARDS + 1
+"""Number of the last card that a room may have, from 0: two questions are around the lesson."""
+CardNumber = Annotated[int, Field(ge=0, le=LAST_CARD)]
 _RECORDS: Mapping[str, type[Any]] = {
     "state": PageState,
     "ask": Ask,
     "teach": Teach,
+    "before": KnowledgeQuestion,
+    "after": KnowledgeQuestion,
     "reveal": Reveal,
     "Reveal": Reveal,
 }
@@ -169,6 +216,13 @@ def read_lesson(data: Any) -> Lesson:
     check_line("title", lesson.title)
     for number, aim in enumerate(lesson.aims):
         check_line(f"aims.{number}", aim)
+    if lesson.ages is not None:
+        check_line("ages", lesson.ages)
+    if lesson.before is None and lesson.after is not None:
+        raise InvalidInput("after is compared with before; give before, too")
+    for name, question in (("before", lesson.before), ("after", lesson.after)):
+        if question is not None:
+            check_knowledge(question, name)
     for number, card in enumerate(lesson.cards):
         _check_card(card, f"cards.{number}")
     return lesson

@@ -93,7 +93,10 @@ def list_lessons(services: ServicesDep) -> RecordResponse[LessonList]:
             id=stored.id,
             title=stored.lesson.title,
             language=stored.lesson.language,
+            minutes=stored.lesson.minutes,
+            ages=stored.lesson.ages,
             aims=list(stored.lesson.aims),
+            has_knowledge_question=stored.lesson.before is not None,
             cards=len(stored.lesson.cards),
             is_built_in=stored.is_built_in,
         )
@@ -134,8 +137,10 @@ def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson,
     shown = services.of(Rooms).taught(stored.lesson)
     if shown is None:
         return stored, False
-    cards = tuple(replace(card, reveal=None) for card in stored.lesson.cards[: shown + 1])
-    return replace(stored, lesson=replace(stored.lesson, cards=cards)), True
+    lesson = stored.lesson
+    around = 0 if lesson.before is None else 1
+    cards = tuple(replace(card, reveal=None) for card in lesson.cards[: max(1, shown + 1 - around)])
+    return replace(stored, lesson=replace(lesson, cards=cards, before=None, after=None)), True
 
 
 @router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
@@ -151,7 +156,11 @@ def lesson_view(stored: FoundLesson, *, is_taught: bool = False) -> LessonView:
     return LessonView(
         title=lesson.title,
         language=lesson.language,
+        minutes=lesson.minutes,
+        ages=lesson.ages,
         aims=lesson.aims,
+        before=lesson.before,
+        after=lesson.after,
         cards=lesson.cards,
         id=stored.id,
         is_built_in=stored.is_built_in,

@@ -54,6 +54,22 @@ class Ask(Record):
     unit: Annotated[str, MaxLen(20)] | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class KnowledgeQuestion(Ask):
+    """A question about what a lesson teaches, which is asked before it and after it.
+
+    Attributes:
+        right: the right answer: one of the choices, or a number.
+    """
+
+    right: Number | Title
+
+    @property
+    def ask(self) -> Ask:
+        """The question without its answer."""
+        return Ask(**{name: getattr(self, name) for name in Ask.__dataclass_fields__})
+
+
 class WalkOutcome(NamedTuple):
     """Outcome of a participant's run.
 
@@ -290,6 +306,19 @@ def check_question(ask: Ask, where: str) -> None:
                     f"{where}.{field} is for questions of the kind {kind} alone, not of {ask.kind}"
                 )
     _TYPES[ask.kind].check(ask, where)
+
+
+def check_knowledge(question: KnowledgeQuestion, where: str) -> None:
+    """Check a question about what a lesson teaches; errors as `check_question`."""
+    if question.kind not in ("choice", "number"):
+        raise InvalidInput(
+            f"{where}.kind must be choice or number, which have one right answer, not "
+            f"{question.kind}"
+        )
+    check_question(question, where)
+    if question.kind == "choice" and not isinstance(question.right, str):
+        raise UnknownName(f"right of {where}", str(question.right), question.choices)
+    check_right(question, question.right, where)
 
 
 def check_right(ask: Ask, answer: float | str, where: str) -> None:

@@ -6,7 +6,7 @@ from pydantic import Field, JsonValue
 
 from app.api.descriptions import VALID
 from app.api.fields import INTEGRAL, Body
-from app.features.classroom.lesson import MAX_CARDS, CardNumber
+from app.features.classroom.lesson import LAST_CARD, CardNumber
 from hexapods.domain.settings import MAX_SETTING_NAME
 
 MAX_SETTINGS = 60
@@ -14,7 +14,7 @@ MAX_SETTINGS = 60
 VALID.update(
     {
         "lesson": "the id of a lesson, or a lesson itself",
-        "card": f"the number of a card, from 0 to {MAX_CARDS - 1}",
+        "card": f"the number of a card, from 0 to {LAST_CARD}",
         "value": "an answer to the card's question",
         "needs_approval": "true or false",
         "frozen": "true or false",

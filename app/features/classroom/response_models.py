@@ -34,13 +34,19 @@ class ListedLesson(Answer):
     """A lesson in a list.
 
     Attributes:
+        minutes: how long it takes a class, if its author says so.
+        ages: for whom it is.
+        has_knowledge_question: whether a question is asked before it and after it.
         cards: number of its cards.
     """
 
     id: str
     title: str
     language: str
+    minutes: Count | None
+    ages: str | None
     aims: list[str]
+    has_knowledge_question: bool
     cards: Count
     is_built_in: bool
 

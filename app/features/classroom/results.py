@@ -3,7 +3,7 @@
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -13,6 +13,8 @@ from pydantic import JsonValue
 from app.answer import Answer, Count
 from app.api.answers import ComparisonView
 from app.api.run_views import KindName
+from app.features.classroom.class_race import ClassRaceView, Finisher, class_race_of
+from app.features.classroom.gain import GainView, Knowledge, class_gain, knowledge_in
 from app.features.classroom.questions import Ask, Score, WalkOutcome, scorer
 from app.features.classroom.room import Room
 from app.features.classroom.room_rows import RoomRun
@@ -59,6 +61,9 @@ class ResultEntry(Answer):
     Attributes:
         name: name of the participant; null where it is hidden from the reader.
         score: score of the prediction; participants get it after the reveal.
+        gain: of the question after the lesson, 1 if the participant was wrong before and is right
+            now, -1 if it is the other way round, else 0; null unless both are answered, and for
+            others before the reveal.
     """
 
     seed: Count
@@ -66,6 +71,7 @@ class ResultEntry(Answer):
     is_own: bool
     prediction: JsonValue
     score: Score | None
+    gain: Literal[-1, 0, 1] | None
     run: RunOutcome | None
 
 
@@ -86,6 +92,9 @@ class CardResultsView(Answer):
         entries: entries of the participants; before the reveal a participant gets their own alone.
         distances_m: distances of all seeds, shortest first; before the reveal for a teacher alone.
         answer: answer that the lesson gives; null before the reveal, but for a teacher.
+        on_their_way: number of finished runs that a projector does not tell yet, as the phones of
+            their participants still show them.
+        race: race of the best, the median and the last robot; null before the reveal.
     """
 
     card: Count
@@ -99,12 +108,20 @@ class CardResultsView(Answer):
     distances_m: list[float]
     interval: IntervalView | None
     answer: float | str | None
+    on_their_way: Count
+    race: ClassRaceView | None
 
 
 class ResultsView(Answer):
-    """The results of a room, by card."""
+    """The results of a room, by card.
+
+    Attributes:
+        gain: what the class gains by the lesson; null before the question after it is revealed,
+            but for a teacher.
+    """
 
     code: str
+    gain: GainView | None
     cards: list[CardResultsView]
 
 
@@ -121,12 +138,15 @@ class Reader(NamedTuple):
     Attributes:
         seed: seed of the participant who reads; None for others.
         is_teacher: whether the reader sees the results of cards that are not revealed.
-        is_projector: whether the class reads along, so that only approved participants are seen.
+        is_projector: whether the class reads along, so that only approved participants are seen,
+            and before the reveal only runs that their participants have seen.
+        is_on_phone: whether a participant's page is open, by seed.
     """
 
     seed: int | None
     is_teacher: bool = False
     is_projector: bool = False
+    is_on_phone: Callable[[int], bool] = lambda seed: False  # noqa: ARG005
 
     def sees(self, room: Room, seed: int) -> bool:
         """Whether the reader may see a participant, of a card that is open to the reader."""
@@ -134,6 +154,17 @@ class Reader(NamedTuple):
         if self.is_teacher and not self.is_projector:
             return True
         return is_own or room.participants[seed].is_approved
+
+    def waits_for(self, room: Room, seed: int, run: RunOutcome, card: int) -> bool:
+        """Whether a finished run is not told yet: its participant's phone still shows it."""
+        if not self.is_projector or card in room.revealed or run.kind == "what-if":
+            return False
+        return run.id not in room.watched and self.is_on_phone(seed)
+
+    def sees_gain(self, room: Room) -> bool:
+        """Whether the reader may see what the class knew before and after the lesson."""
+        is_told = room.knowledge_cards is not None and room.knowledge_cards[1] in room.revealed
+        return is_told or (self.is_teacher and not self.is_projector)
 
 
 def results_of(room: Room, store: RunStore, cards: Sequence[int], reader: Reader) -> ResultsView:
@@ -147,17 +178,38 @@ def results_of(room: Room, store: RunStore, cards: Sequence[int], reader: Reader
     """
     room = room.snapshot()
     views = [_card_results(room, store, card, reader) for card in cards]
-    return ResultsView(code=room.code, cards=views)
+    knowledge = knowledge_in(room) if reader.sees_gain(room) else {}
+    seen = {seed: known for seed, known in knowledge.items() if reader.sees(room, seed)}
+    return ResultsView(code=room.code, gain=class_gain(seen), cards=views)
+
+
+def finishers_of(room: Room, store: RunStore, card: int) -> list[Finisher]:
+    """Return the finished runs of a card of the participants whom the class may see."""
+    room = room.snapshot()
+    newest = {
+        seed: _newest(room, store, seed, card)
+        for seed, participant in sorted(room.participants.items())
+        if participant.is_approved
+    }
+    return [
+        Finisher(seed, run.shown.id, run.outcome.distance_m)
+        for seed, run in newest.items()
+        if run is not None
+        and run.shown.state == "finished"
+        and run.shown.kind != "what-if"
+        and run.outcome.distance_m is not None
+    ]
 
 
 def as_csv(results: ResultsView) -> str:
-    """Return results as CSV, without names."""
+    """Return results as CSV, without names; its last row is the class's gain, if there is one."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
         [
             *("card", "seed", "prediction", *SCORES),
             *("run_id", "kind", "state", "settings", "distance_m", "winners"),
+            *("gain", "gain_low", "gain_high"),
         ]
     )
     for result in results.cards:
@@ -169,8 +221,13 @@ def as_csv(results: ResultsView) -> str:
             row = [
                 *(result.card, entry.seed, prediction, *(getattr(score, name) for name in SCORES)),
                 *([None] * 5 + [""] if run is None else _cells(run)),
+                *(entry.gain, None, None),
             ]
             writer.writerow([text_cell(cell) if isinstance(cell, str) else cell for cell in row])
+    if results.gain is not None:
+        gain = results.gain
+        of_class = [results.cards[-1].card, "class", *[None] * (1 + len(SCORES) + 6)]
+        writer.writerow([*of_class, gain.gain, gain.low, gain.high])
     return file.getvalue()
 
 
@@ -182,11 +239,15 @@ def _cells(run: RunOutcome) -> list[Any]:
 def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> CardResultsView:
     newest = {seed: _newest(room, store, seed, card) for seed in sorted(room.participants)}
     runs = {seed: run for seed, run in newest.items() if run is not None}
-    ended = {seed: run.outcome for seed, run in runs.items() if run.shown.state == "finished"}
+    finished = {seed: run for seed, run in runs.items() if run.shown.state == "finished"}
+    waiting = {s for s, run in finished.items() if reader.waits_for(room, s, run.shown, card)}
+    ended = {seed: run.outcome for seed, run in finished.items() if seed not in waiting}
     seen = [outcome for seed, outcome in ended.items() if reader.sees(room, seed)]
     ranked = sorted(outcome.distance_m for outcome in seen if outcome.distance_m is not None)
     is_open = reader.is_teacher or card in room.revealed
-    shown = room.lesson.cards[card]
+    shown = room.deck[card]
+    knowledge = knowledge_in(room) if reader.sees_gain(room) else {}
+    is_after = room.knowledge_of(card) == "after"
     score = shown.ask and scorer(shown.ask, shown.revealed.answer, seen)
     entries = []
     for seed, participant in sorted(room.participants.items()):
@@ -196,7 +257,7 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
         is_named = is_own or (reader.is_teacher and not reader.is_projector)
         name = participant.name if is_named else room.name_for_others(seed)
         prediction, run = room.predictions.get((seed, card)), runs.get(seed)
-        outcome = None if run is None else run.shown
+        outcome = None if run is None or seed in waiting else run.shown
         if outcome is not None and is_open and outcome.distance_m is not None:
             over = sum(distance_m > outcome.distance_m for distance_m in ranked)
             outcome = replace(outcome, rank=1 + over)
@@ -204,7 +265,13 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
             outcome = replace(outcome, answer=None)
         scored = score(prediction) if score and prediction is not None and is_open else None
         entry = ResultEntry(
-            seed=seed, name=name, is_own=is_own, prediction=prediction, score=scored, run=outcome
+            seed=seed,
+            name=name,
+            is_own=is_own,
+            prediction=prediction,
+            score=scored,
+            gain=knowledge.get(seed, Knowledge(None, None)).gain if is_after else None,
+            run=outcome,
         )
         entries.append(entry)
     return CardResultsView(
@@ -214,11 +281,13 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
         is_revealed=card in room.revealed,
         participants=len(room.participants),
         predicted=sum(number == card for _, number in room.predictions),
-        finished=len(ended),
+        finished=len(finished),
         entries=entries,
         distances_m=ranked if is_open else [],
         interval=_interval(ranked) if is_open and ranked else None,
         answer=shown.revealed.answer if is_open else None,
+        on_their_way=len(waiting),
+        race=class_race_of(room, card) if card in room.revealed else None,
     )
 
 

@@ -29,6 +29,8 @@ class RoomState(Answer):
         participants: number of participants who are in the room.
         predicted: number of participants who have answered the card that is shown.
         started: number of participants who have started a run on it.
+        knowledge: whether the card asks what is known before the lesson, or after it; null for
+            cards of the lesson.
         spotlight: id of the run on its stage.
     """
 
@@ -43,6 +45,7 @@ class RoomState(Answer):
     participants: Count
     predicted: Count
     started: Count
+    knowledge: Literal["before", "after"] | None
     spotlight: str | None
     needs_approval: bool
 
@@ -71,6 +74,8 @@ class Room:
         next_seed: seed of the next participant; no seed is given twice.
         used_at: time of the last action in the room, as far as it is known, in UTC.
         finished: cache of the outcomes of finished runs, by id; `results` fills it.
+        watched: ids of the runs that their participants have seen to the end, since the start of
+            the server.
     """
 
     code: str
@@ -89,6 +94,7 @@ class Room:
     next_seed: int = field(default=0, compare=False)
     used_at: datetime = field(default=datetime.min.replace(tzinfo=UTC), compare=False)
     finished: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    watched: set[str] = field(default_factory=set, compare=False, repr=False)
 
     @property
     def is_open(self) -> bool:
@@ -98,7 +104,17 @@ class Room:
     @property
     def shown(self) -> Card:
         """The card that is shown."""
-        return self.lesson.cards[self.card]
+        return self.deck[self.card]
+
+    @property
+    def deck(self) -> tuple[Card, ...]:
+        """The cards that the room shows, see `Lesson.deck`."""
+        return self.lesson.deck
+
+    @property
+    def knowledge_cards(self) -> tuple[int, int] | None:
+        """Numbers of the cards that ask before the lesson and after it; None without them."""
+        return None if self.lesson.before is None else (0, len(self.deck) - 1)
 
     @property
     def present(self) -> list[ParticipantRow]:
@@ -129,11 +145,12 @@ class Room:
             lesson_id=self.lesson_id,
             state=self.phase,
             card=self.card,
-            cards=len(self.lesson.cards),
+            cards=len(self.deck),
             revealed=sorted(self.revealed),
             participants=len(self.present),
             predicted=sum(card == self.card for _, card in list(self.predictions)),
             started=len(started),
+            knowledge=self.knowledge_of(self.card),
             spotlight=self.spotlight,
             needs_approval=self.needs_approval,
         )
@@ -185,10 +202,31 @@ class Room:
         Raises:
             NotFound: if it has not.
         """
-        if not 0 <= number < len(self.lesson.cards):
-            raise NotFound(
-                f"the lesson has no card {number}; its cards are 0 to {len(self.lesson.cards) - 1}"
-            )
+        last = len(self.deck) - 1
+        if not 0 <= number <= last:
+            raise NotFound(f"the lesson has no card {number}; its cards are 0 to {last}")
+
+    def knowledge_of(self, number: int) -> Literal["before", "after"] | None:
+        """Return whether a card asks what is known before the lesson, or after it."""
+        before, after = self.knowledge_cards or (None, None)
+        return "before" if number == before else "after" if number == after else None
+
+    def revealed_with(self, number: int) -> frozenset[int]:
+        """Return the numbers of the cards that are revealed together with a card.
+
+        Raises:
+            Conflict: if it asks before the lesson: what is right would be known after it.
+        """
+        match self.knowledge_of(number), self.knowledge_cards:
+            case "before", (_, after):
+                raise Conflict(
+                    f"card {number} asks before the lesson; it is revealed with card {after}, "
+                    "which asks after it",
+                    "open",
+                )
+            case "after", (before, _):
+                return frozenset({before, number})
+        return frozenset({number})
 
     def check_seated(self, seed: int) -> None:
         """Check that a participant has a seat: was not removed, and has not left.

@@ -1,5 +1,6 @@
 """Routes of rooms, in which a class goes through a lesson together."""
 
+import logging
 from contextlib import suppress
 from typing import Annotated, Any, Literal
 
@@ -35,6 +36,7 @@ from app.features.classroom.access import (
     work_of_card,
 )
 from app.features.classroom.card_starts import CardStarts
+from app.features.classroom.class_race import class_race, class_race_of
 from app.features.classroom.lesson import CardNumber, read_lesson
 from app.features.classroom.lessons import Lessons
 from app.features.classroom.names import in_groups, normalized
@@ -57,7 +59,14 @@ from app.features.classroom.response_models import (
     RoomList,
     RoomView,
 )
-from app.features.classroom.results import MEDIA_TYPE, Reader, ResultsView, as_csv, results_of
+from app.features.classroom.results import (
+    MEDIA_TYPE,
+    Reader,
+    ResultsView,
+    as_csv,
+    finishers_of,
+    results_of,
+)
 from app.features.classroom.room import Room
 from app.features.classroom.room_stages import RoomStages, path_of_room
 from app.features.classroom.room_views import room_view
@@ -65,14 +74,21 @@ from app.features.classroom.rooms import Rooms
 from app.features.classroom.teaching import Teaching
 from app.features.classroom.what_ifs import WhatIfs
 from app.storage.errors import Conflict, Forbidden, NotFound
+from app.storage.stored_races import RACE
 from app.viewer.shared_stage import SharedStage
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.text import MAX_NAME, check_name
+from hexapods.shows.race_show import SPEED
+from hexapods.shows.show import MAX_SPEED
 
 CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
+RunPath = Annotated[str, Path(description="id of a run of the room", max_length=64)]
 SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
 MIN_JOIN_KEY = 16
 """Minimum length of the Idempotency-Key of a request to join, which is a secret."""
+_CLASS_RACE_S = 15.0
+"""Real time within which the race of a class is shown [s]."""
+_logger = logging.getLogger(__name__)
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
 
 router = api_router(prefix="/rooms", tags=["rooms"])
@@ -274,12 +290,43 @@ def freeze_room(
 def reveal_card(
     services: ServicesDep, request: Request, code: CodePath, body: RevealBody | None = None
 ) -> RecordResponse[RoomView]:
-    """Show all answers and runs of a card to all participants; it takes no more answers."""
+    """Show all answers and runs of a card to all participants; it takes no more answers.
+
+    The best, the median and the last robot of the card that is shown race together on the stage.
+    """
     number = None if body is None else body.card
-    shown = services.of(Rooms).get(code).card
-    room = services.of(Rooms).reveal(code, shown if number is None else number)
+    card = services.of(Rooms).get(code).card if number is None else number
+    room = services.of(Rooms).reveal(code, card)
     services.of(Teaching).race(room)
+    _race_together(services, room, card)
     return RecordResponse(room_view(request, services, room, None))
+
+
+def _race_together(services: Services, room: Room, card: int) -> None:
+    """Let the best, the median and the last robot of the card that is shown race on the stage."""
+    if card != room.card or class_race_of(room, card) is not None:
+        return
+    race = class_race(services.store, services.recordings, finishers_of(room, services.store, card))
+    if race is None:
+        return
+    run = race.run(services.jobs.new_id(), f"The class · {room.shown.title or room.lesson.title}")
+
+    def store_run() -> None:
+        services.jobs.keep(run, {RACE: race.file()})
+
+    try:
+        if not services.of(Rooms).race_together(
+            room.code, card, race, run=run, store_run=store_run
+        ):
+            return
+    except HexapodError as error:  # the disk is full: all else is revealed
+        _logger.warning("no race of the class in the room %s: %s", room.code, error)
+        return
+    shared = services.of(RoomStages).of(room.code)
+    if shared is not None:
+        speed = race.config.steps * race.config.robot.step_s / _CLASS_RACE_S
+        speed = min(max(speed, SPEED), MAX_SPEED)
+        shared.stage.set(run_id=run.id, playing=True, speed=speed)
 
 
 @router.post("/{code}/end", summary="End a room")
@@ -365,7 +412,7 @@ def start_run(
     """
     card, settings = (body := body or RunBody()).card, body.settings
     starts, room = services.of(CardStarts), services.of(Rooms).check_run(code, card)
-    number, shown = (room.card, room.shown) if card is None else (card, room.lesson.cards[card])
+    number, shown = (room.card, room.shown) if card is None else (card, room.deck[card])
     given = starts.given(shown, settings)
     if shown.go == "what-if":
         training, client = starts.what_if(shown, given), charged_client(request.scope)
@@ -385,6 +432,17 @@ def start_run(
         card=number,
     )
     return located(services, request, run, 202)
+
+
+@router.put("/{code}/runs/{run_id}/watched", status_code=204, summary="Tell that a run was watched")
+@policy(access=participant("watch"))
+def note_watched(services: ServicesDep, code: CodePath, seed: SeatDep, run_id: RunPath) -> None:
+    """Note that the participant who asks has watched a run of theirs to its end.
+
+    Before the reveal the projector does not tell how far it came until then, as long as the page of
+    the participant is open. What is noted is forgotten when the server ends.
+    """
+    services.of(Rooms).note_watched(code, seed, run_id)
 
 
 def _name(room: Room, seed: int) -> str:
@@ -418,13 +476,18 @@ def get_results(
     room = services.of(Rooms).get(code)
     if card is not None:
         room.check_card(card)
-    cards = range(len(room.lesson.cards)) if card is None else [card]
+    cards = range(len(room.deck)) if card is None else [card]
     if reader is not None:
         cards = [number for number in cards if room.has_shown(number)]
         if card is not None and not cards:
             raise Forbidden(f"card {card} was not shown yet; the class is at card {room.card}")
     seat = dict(reader or ()).get(room.code)
-    reader_ = Reader(seat, is_teacher=reader is None, is_projector=projector)
+    reader_ = Reader(
+        seat,
+        is_teacher=reader is None,
+        is_projector=projector,
+        is_on_phone=lambda seed: services.of(Rooms).is_here((room.code, seed)),
+    )
     results = results_of(room, services.store, cards, reader_)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(

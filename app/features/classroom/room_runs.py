@@ -6,6 +6,7 @@ from datetime import datetime
 from typing import Any
 
 from app.api.answers import ComparisonView
+from app.features.classroom.class_race import ClassRace
 from app.features.classroom.room import Room, given_key
 from app.features.classroom.room_rows import CLASS_SEED, RoomRows, RoomRun, Seat
 from app.features.classroom.seats import reserve_seed
@@ -154,6 +155,27 @@ class RoomRuns:
             return queue(linked)
         except BaseException:
             self._unlink(room, linked.links)
+            raise
+
+    def keep_class_race(
+        self, room: Room, race: ClassRace, card: int, *, run: Run, store_run: Callable[[], object]
+    ) -> None:
+        """Store the race of a card's best, median and last robot, which all may see."""
+        link = RoomRun(
+            run_id=run.id,
+            room=room.code,
+            seed=race.seeds[0],
+            card=card,
+            given=race.given,
+            is_main=False,
+            is_shown=True,
+            created_at=run.created_at,
+        )
+        self._keep(room, [link])
+        try:
+            store_run()
+        except BaseException:
+            self._unlink(room, [run.id])
             raise
 
     def answer_of(

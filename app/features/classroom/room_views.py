@@ -45,7 +45,9 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
     shown: Card = room.shown
     if not is_teacher and room.card not in room.revealed:
         shown = replace(shown, reveal=None)
-    lesson = FoundLesson(room.lesson_id or "", room.lesson, is_built_in=False)
+    # The teacher's cards are those of the room, with the questions around the lesson.
+    taught = replace(room.lesson, cards=room.deck, before=None, after=None)
+    lesson = FoundLesson(room.lesson_id or "", taught, is_built_in=False)
     link = link_to(request, services.settings, path_of_room(in_groups(room.code)))
     return RoomView(
         **vars(room.state),

@@ -12,6 +12,7 @@ from typing import Any
 
 from app.api.answers import ComparisonView
 from app.feature import DeleteRuns
+from app.features.classroom.class_race import ClassRace, class_race_of
 from app.features.classroom.lesson import Lesson, plain, read_lesson
 from app.features.classroom.lessons import FoundLesson
 from app.features.classroom.names import Choose, new_code, normalized
@@ -110,7 +111,7 @@ class Rooms:
         if room is None:
             return row  # its room is left out
         room.check_card(row.card)
-        ask = room.lesson.cards[row.card].ask
+        ask = room.deck[row.card].ask
         if ask is None:
             raise ValueError(f"card {row.card} asks nothing")
         return row._replace(value=check_answer(ask, row.value))
@@ -230,7 +231,11 @@ class Rooms:
             NotFound: if there is no such room, or no such card.
             Conflict: if the room has ended.
         """
-        return self._change(code, lambda room: room.check_card(number), card=number)
+        with self._lock:
+            room = self.get(code)
+            # What the stage shows is of the card before.
+            changes = {} if number == room.card else {"spotlight": None}
+            return self._change(code, lambda room: room.check_card(number), card=number, **changes)
 
     def freeze(self, code: str, is_frozen: bool) -> Room:
         """Forbid answers and starts in a room, or permit them again; errors as `show_card`."""
@@ -242,16 +247,17 @@ class Rooms:
             room = self.get(code)
             room.check_card(number)
             room.check_open()
+            numbers = room.revealed_with(number)
             approved = {
                 seed for seed, participant in room.participants.items() if participant.is_approved
             }
             runs = [r for r in room.runs.values() if r.card == number and r.seed in approved]
             self._rows.change_room(
                 room.code,
-                {"revealed": sorted(room.revealed | {number})},
+                {"revealed": sorted(room.revealed | numbers)},
                 [run.run_id for run in runs],
             )
-            room.revealed |= {number}
+            room.revealed |= numbers
             self._runs.note_shown(room, runs)
         self._changed(room)
         return room
@@ -301,6 +307,48 @@ class Rooms:
             run = self._runs.start_of_class(room, given, start, queue)
         self._changed(room)
         return run
+
+    def race_together(
+        self, code: str, card: int, race: ClassRace, *, run: Run, store_run: Callable[[], object]
+    ) -> bool:
+        """Store the race of a revealed card's best, median and last robot, and spotlight it.
+
+        Args:
+            code: code of the room.
+            card: number of the card.
+            race: the race.
+            run: the race as a run.
+            store_run: stores the run.
+
+        Returns:
+            whether it was stored; not if the card has one, or another card is shown.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it has ended.
+            StorageFull, StorageFailed: if it cannot be stored.
+        """
+        with self._lock:
+            room = self.get(code)
+            if class_race_of(room, card) is not None or room.card != card:
+                return False
+            self._runs.keep_class_race(room, race, card, run=run, store_run=store_run)
+            self.spotlight(code, run.id)
+        return True
+
+    def note_watched(self, code: str, seed: int, run_id: str) -> None:
+        """Note that a participant has seen a run of theirs to its end.
+
+        Raises:
+            NotFound: if there is no such room, or the participant has no such run.
+        """
+        room = self.get(code)
+        run = room.runs.get(run_id)
+        if run is None or run.seed != seed:
+            raise NotFound(f"the participant has no run {run_id[:20]!r} in the room {room.code}")
+        if run_id not in room.watched:
+            room.watched.add(run_id)
+            self.on_changed(room)
 
     def change_participant(
         self, code: str, seed: int, *, is_name_hidden: bool | None, is_approved: bool | None
@@ -493,7 +541,7 @@ class Rooms:
             _check_shown(room, card)
             _check_allowed(room, "predict")
             room.check_going_on()
-            ask = room.lesson.cards[card].ask
+            ask = room.deck[card].ask
             answer = None if ask is None else check_answer(ask, value)
             if (seed, card) in room.predictions:
                 raise Conflict(
@@ -642,6 +690,6 @@ def _room(row: RoomRow) -> Room:
     if not isinstance(revealed, list) or not all(type(number) is int for number in revealed):
         raise ValueError("revealed: it is no list of numbers")
     lesson = read_lesson(row.lesson)
-    card = min(max(row.card, 0), len(lesson.cards) - 1)
+    card = min(max(row.card, 0), len(lesson.deck) - 1)
     fields = {**row._asdict(), "lesson": lesson, "card": card, "revealed": frozenset(row.revealed)}
     return Room(**fields, used_at=row.ended_at or row.created_at)

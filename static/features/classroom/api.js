@@ -57,6 +57,8 @@ export const stopTeaching = (code) => call("DELETE", `${pathOf(code)}/teaching`)
 export const press = (code, body) => call("POST", `${pathOf(code)}/presses`, body);
 /** The values that a training has learned. @type {(run_id: string) => Promise<QTable>} */
 export const getTable = (run_id) => call("GET", `trainings/${run_id}/q-table?format=json`);
+/** Tell that an own run was watched to its end. @type {(code: string, id: string) => Promise<null>} */
+export const noteWatched = (code, id) => call("PUT", `${pathOf(code)}/runs/${encodeURIComponent(id)}/watched`);
 /** Results of a card; on a projector as the class may see them. */
 /** @type {(code: string, card: number, isProjector: boolean) => Promise<Results>} */
 export const getResults = (code, card, isProjector) =>

@@ -20,7 +20,7 @@ const makeAsk = (ask) =>
 
 /** @type {(score: object, prediction?: any) => ResultEntry} */
 const entry = (score, prediction = 0.4) => ({
-  seed: 0, name: "Keen Ant", is_own: true, prediction, run: null,
+  seed: 0, name: "Keen Ant", is_own: true, prediction, run: null, gain: null,
   score: { is_right: null, share: null, quantile: null, error: null, ...score },
 });
 

@@ -95,7 +95,7 @@ def card(**fields: Any) -> dict[str, Any]:
         ({"title": 5, "cards": [{"text": "x"}]}, "title: must be a valid string"),
         ({"title": "a\u202eb", "cards": [{"text": "x"}]}, "title must be one line of text"),
         ({"title": "x", "cards": [{"text": "x"}] * (MAX_CARDS + 1)}, "cards"),
-        ({**card(), "pages": 1}, "unknown field 'pages'; choose one of: title, language, aims"),
+        ({**card(), "pages": 1}, "unknown field 'pages'; choose one of: title, language, minutes"),
         (card(txt=1), "cards.0: unknown field 'txt'; choose one of: title, text"),
         (card(text="<script>alert(1)</script>"), "cards.0.text has HTML, '<script>"),
         (card(text="a <img src=x onerror=y> b"), "cards.0.text has HTML"),

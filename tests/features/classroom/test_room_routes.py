@@ -1,14 +1,11 @@
 """Rooms over REST: a class of clients with cookies of their own, and real jobs."""
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable
 from typing import Any
 
-import httpx2
 import pytest
 from fastapi import FastAPI
 from pydantic import TypeAdapter
-from starlette.testclient import TestClient
 
 from app.api.deps import EventListener, Services
 from app.features.classroom.access import Participant
@@ -23,96 +20,8 @@ from app.features.classroom.room import RoomEvent
 from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.features.classroom.seats import MAX_PARTICIPANTS
-from app.server import create_app
-from app.settings import Settings
-from app.storage.database.opening import open_store
-from tests.api.calls import ADDRESS, Api, refused
-
-TOKEN = "a-token-for-tests"
-FORM = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 60, "evaluate_every": 20}
-LESSON: dict[str, Any] = {
-    "title": "A short lesson",
-    "aims": ["Learn to wait"],
-    "cards": [
-        {"title": "Look", "text": "Only look."},
-        {
-            "title": "Guess",
-            "text": "How far?",
-            "state": {"form": FORM},
-            "ask": {"kind": "number", "text": "How far?", "minimum": -1, "maximum": 2, "unit": "m"},
-            "go": "training",
-            "may": {"alpha": {"minimum": 0.1, "maximum": 0.5}, "steps": {"maximum": 80}},
-            "reveal": {"text": "So far."},
-        },
-        {
-            "title": "Race",
-            "text": "Who wins?",
-            "state": {"form": {**FORM, "lanes": ["q-learning", "greedy"], "race_steps": 5}},
-            "ask": {"kind": "choice", "text": "Who?", "choices": ["q-learning", "greedy"]},
-            "go": "race",
-        },
-        {"text": "What if?", "state": {"form": {"steps": 20}}, "go": "what-if"},
-        {"text": "Where?", "ask": {"kind": "point", "text": "Where on the chart?"}},
-        {"text": "Draw", "ask": {"kind": "curve", "text": "Draw it."}},
-    ],
-}
-
-
-class Class:
-    """A server with a token, its teacher, and as many pupils as join.
-
-    Attributes:
-        teacher: an operator.
-    """
-
-    def __init__(self, client: TestClient, stack: ExitStack) -> None:
-        self._client, self._stack = client, stack
-        self.teacher = Api(client)
-        client.headers["Authorization"] = f"Bearer {TOKEN}"
-
-    def pupil(self) -> Api:
-        """Return a client without any cookie."""
-        client = TestClient(self._client.app, base_url=ADDRESS, follow_redirects=False)
-        client.portal = self._client.portal
-        client.headers["X-Requested-With"] = "tests"
-        self._stack.callback(client.close)
-        return Api(client)
-
-    def room(self, lesson: Any = LESSON, *, is_further: bool = False, **options: Any) -> str:
-        """Open a room, after the end of those before unless it is a further one."""
-        for room in [] if is_further else self.teacher.get("/rooms")["items"]:
-            self.teacher.call("POST", f"/rooms/{room['code']}/end")
-        answer = self.teacher.call("POST", "/rooms", json={"lesson": lesson, **options})
-        assert answer.status_code == 201, answer.text
-        return str(answer.json()["code"])
-
-    def joined(self, code: str) -> Api:
-        api = self.pupil()
-        answer = api.call("POST", f"/rooms/{code}/participants")
-        assert answer.status_code == 201, answer.text
-        return api
-
-    def show(self, code: str, card: int) -> None:
-        answer = self.teacher.call("PUT", f"/rooms/{code}/card", json={"card": card})
-        assert answer.status_code == 200, answer.text
-
-    def finished(self, run: dict[str, Any]) -> dict[str, Any]:
-        return self.teacher.finished(run)
-
-
-@pytest.fixture(scope="module")
-def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
-    settings = Settings(data=tmp_path_factory.mktemp("school"), job_niceness=0, token=TOKEN)
-    with ExitStack() as stack:
-        store = stack.enter_context(open_store(settings))
-        client = TestClient(create_app(settings, store), base_url=ADDRESS, follow_redirects=False)
-        yield Class(stack.enter_context(client), stack)
-
-
-def started(answer: httpx2.Response) -> dict[str, Any]:
-    assert answer.status_code == 202, answer.text
-    run: dict[str, Any] = answer.json()
-    return run
+from tests.api.calls import Api, refused
+from tests.features.classroom.school import FORM, LESSON, TOKEN, Class, started
 
 
 def test_a_class_predicts_runs_and_sees_what_came_of_it(school: Class) -> None:
@@ -381,7 +290,8 @@ def test_nothing_of_a_participant_is_shown_before_the_approval(school: Class) ->
 
     def seen(api: Api, query: str = "") -> tuple[list[int], int]:
         (result,) = api.get(f"/rooms/{code}/results?card=1{query}")["cards"]
-        TypeAdapter(ResultsView).validate_python({"code": code, "cards": [result]})
+        view = {"code": code, "gain": None, "cards": [result]}
+        TypeAdapter(ResultsView).validate_python(view)
         return [entry["seed"] for entry in result["entries"]], len(result["distances_m"])
 
     projector = "&projector=true"
@@ -436,7 +346,7 @@ def test_a_what_if_is_kept_as_a_result_of_the_card(school: Class) -> None:
     csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
     row = csv.splitlines()[1].split(",")
     assert row[8:10] == ["what-if", "finished"]
-    assert float(row[-2]) == answer["chosen"]["iqm_m"]
+    assert float(row[11]) == answer["chosen"]["iqm_m"]
     school.teacher.call("POST", f"/rooms/{code}/reveal")
     seen = entries(second)
     assert [(x["run"]["rank"], x["run"]["answer"] is None) for x in seen if not x["is_own"]] in (

@@ -26,7 +26,7 @@ from hexapods.tournaments.rules import commitment_of
 from hexapods.tournaments.tournament_file import read_file
 from hexapods.tournaments.verification import verify
 from tests.api.calls import ADDRESS, Api, refused
-from tests.features.classroom.test_room_routes import FORM, TOKEN, Class
+from tests.features.classroom.school import FORM, TOKEN, Class
 from tests.quick_robot import HASTY_JSON
 from tests.timeouts import ProgressTimeout
 

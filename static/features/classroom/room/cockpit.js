@@ -9,8 +9,11 @@ import { PupilsWindow, Sharing } from "../components/sharing.js";
 import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../../../js/page.js";
 import { Away, Failure } from "./join.js";
+import { gainInWords } from "./acts/gain-words.js";
 import { People } from "./people.js";
-import { busy, end, freeze, isRevealed, remove, reveal, room, showCard, shownResults, spotlight } from "./room.js";
+import {
+  busy, end, freeze, gain, isRevealed, remove, reveal, room, showCard, shownResults, spotlight,
+} from "./room.js";
 import { axisOf } from "./scores.js";
 
 /** @import { Classroom, LessonCard } from "../../../js/types.js" */
@@ -30,6 +33,9 @@ export function Cockpit() {
         <${Counts} classroom=${classroom} />
         <${Actions} classroom=${classroom} />
         <${Dots} />
+        ${gain.value && html`
+          <section class="panel" aria-label="Gain"><h2>Gain of the class</h2><p>${gainInWords(gain.value)}</p></section>
+        `}
       </div>
       <${People} classroom=${classroom} />
       <${Slot} name="cockpit of a room" room=${classroom} />
@@ -102,14 +108,22 @@ function Act({ classroom }) {
       <div class="row">
         <button class="secondary" disabled=${card === 0 || isStill}
           onClick=${() => showCard(card - 1)}>Previous</button>
-        <button class="primary" disabled=${isLast || isStill} onClick=${() => showCard(card + 1)}>
+        ${waitsForReveal(classroom) && html`
+          <button class="primary" disabled=${isStill || busy.value.reveal} onClick=${reveal}>Reveal</button>
+        `}
+        <button class=${waitsForReveal(classroom) ? "secondary" : "primary"} disabled=${isLast || isStill}
+          onClick=${() => showCard(card + 1)}>
           ${isLast ? "This is the last card" : `Next: ${titleOf(all[card + 1], card + 1)}`}
         </button>
       </div>
-      <${Failure} at="card" />
+      <${Failure} at="card" /><${Failure} at="reveal" />
     </article>
   `;
 }
+
+/** Whether the reveal is the next act: there is something to reveal, and it was not. @param {Classroom} classroom */
+const waitsForReveal = ({ shown, html: texts, knowledge }) =>
+  !isRevealed.value && knowledge !== "before" && Boolean(shown.ask || shown.go || shown.teach || texts.reveal);
 
 /** @param {LessonCard} card */
 const mayInWords = ({ may = {} }) => (Object.keys(may).length ? `; open: ${Object.keys(may).join(", ")}` : "");
@@ -132,21 +146,21 @@ function Counts({ classroom }) {
 
 /** @param {{ classroom: Classroom }} props */
 function Actions({ classroom }) {
-  const { state, spotlight: lit, shown } = classroom;
+  const { state, spotlight: lit } = classroom;
   const isOver = state === "ended";
-  const hasReveal = Boolean(shown.ask || shown.go || shown.teach || classroom.html.reveal);
+  const isRace = lit !== null && lit === shownResults.value?.race?.run_id;
   return html`
     <div class="row deeds-of-all">
       <button class="secondary" aria-pressed=${state === "frozen" ? "true" : "false"}
         disabled=${isOver || busy.value.freeze} onClick=${() => freeze(state !== "frozen")}>
         ${state === "frozen" ? "Let them go on" : "Freeze all"}
       </button>
-      <button class="secondary" disabled=${isOver || isRevealed.value || !hasReveal || busy.value.reveal}
-        onClick=${reveal}>${isRevealed.value ? "Revealed" : "Reveal"}</button>
-      ${lit && html`<button class="secondary" onClick=${() => spotlight(null)}>Spotlight off</button>`}
+      ${lit && html`
+        <button class="secondary" onClick=${() => spotlight(null)}>${isRace ? "End the race" : "Spotlight off"}</button>
+      `}
     </div>
-    ${shown.teach && html`<${Loaded} name="teaching" load=${loadTeaching} isOver=${isOver} />`}
-    <${Failure} at="freeze" /><${Failure} at="reveal" /><${Failure} at="spotlight" />
+    ${classroom.shown.teach && html`<${Loaded} name="teaching" load=${loadTeaching} isOver=${isOver} />`}
+    <${Failure} at="freeze" /><${Failure} at="spotlight" />
   `;
 }
 

@@ -1,11 +1,10 @@
 // The own robot of a participant: its picture, how far it is, and what came of it.
 import { html, ProgressBar } from "../../../js/components/elements.js";
-import { replayProblem } from "../../../js/player.js";
 import { participantRunNarrative } from "./run-sentences.js";
 import { isAway } from "../../../js/store.js";
 import { givenInWords } from "./allowed-settings.js";
-import { arrived, Picture, ReplayBar } from "./picture.js";
-import { ownEntry, ownRun, replayed, room } from "./room.js";
+import { Picture, ReplayBar } from "./picture.js";
+import { arrived, ownEntry, ownRun, replayed, room } from "./room.js";
 
 export const OwnRobot = () => html`
   <section class="own-robot" aria-label="Your robot">
@@ -21,7 +20,7 @@ export function OwnRun() {
   if (run === null) return null;
   const said = participantRunNarrative({
     run, distance_m: ownEntry.value?.run?.distance_m ?? run.result?.distance_m ?? null, isAway: isAway.value,
-    hasArrived: replayed.value !== run.id || replayProblem.value !== null || arrived.value.has(run.id),
+    hasArrived: replayed.value !== run.id || arrived.value.has(run.id),
   });
   if (said.isBad) return html`<p class="run-words bad" role="alert">${said.words}</p>`;
   return said.distance === undefined ? html`<${OnItsWay} ...${said} />` : html`<${Arrived} ...${said} />`;

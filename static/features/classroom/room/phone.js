@@ -10,11 +10,11 @@ import { Away, Door } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { Answer, KINDS, scoreInWords } from "./questions.js";
 import {
-  CLOSER, closerLink, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, replayed, room,
+  arrived, CLOSER, closerLink, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, replayed, room,
   shownResults,
 } from "./room.js";
 
-/** @import { Ask, Classroom, LessonCard } from "../../../js/types.js" */
+/** @import { Ask, Classroom, LessonCard, ResultEntry } from "../../../js/types.js" */
 
 export function Phone() {
   const classroom = /** @type {Classroom} */ (room.value);
@@ -125,10 +125,19 @@ function Closer({ card }) {
 
 // ---- after the reveal
 
+/** Whether the picture of the own run is not yet where its distance can be told. @param {ResultEntry | null} entry */
+const isStillShown = (entry) =>
+  entry?.run?.state === "finished" && entry.run.kind !== "what-if" && !arrived.value.has(entry.run.id);
+
 /** @param {{ classroom: Classroom }} props */
 function Revealed({ classroom }) {
   const results = shownResults.value;
   const entry = ownEntry.value;
+  if (isStillShown(entry)) {
+    return html`
+      <p class="dim waiting" role="status">The class comes when your robot is at its end.</p>
+    `;
+  }
   return html`
     <section class="phone-part revealed" aria-label="The class">
       ${results && results.distances_m.length > 0 && html`<${Loaded} name="class" load=${loadClass} />`}

@@ -1,25 +1,22 @@
 // The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
-import { effect, signal } from "@preact/signals";
+import { effect, untracked } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { noteWatched } from "../api.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { page } from "../../../js/page-state.js";
 import { aim, directions, isTaken, shownTheme, takeCamera } from "../../../js/page.js";
 import { isShownToEnd } from "../../../js/narrative/moment.js";
-import { isAway, scene } from "../../../js/store.js";
+import { connection, isAway, scene } from "../../../js/store.js";
 import {
   closeReplay, drawIn, endTime, followPlayer, isBuffering, openReplay, playback, playReplay, plan, position,
   replayProblem, setReplaySpeed,
 } from "../../../js/player.js";
-import { isProjector, isTeaching, replayed, room, toReplay } from "./room.js";
+import { arrived, code, isProjector, isTeaching, ownRunId, replayed, room, toReplay } from "./room.js";
 
-/** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "../../../js/replay-frames.js" */
 
 /** A practice is long, and its steps are much alike. */
 const SPEEDS = { training: 8, race: 2 };
-
-/** Ids of the runs whose pictures have been where their distances can be told. @type {Signal<Set<string>>} */
-export const arrived = signal(new Set());
 
 /** Show the stage on a projector, and on phones that teach; on others the own run as soon as it has a step. */
 export function followPicture() {
@@ -31,9 +28,14 @@ export function followPicture() {
 function followOwnRun() {
   effect(() => {
     const id = replayed.value;
-    if (id !== null && isShownToEnd(scene.value, id) && !arrived.peek().has(id)) {
-      arrived.value = new Set(arrived.peek()).add(id);
-    }
+    const isThere = isShownToEnd(scene.value, id) || replayProblem.value !== null;
+    if (id !== null && isThere && !arrived.peek().has(id)) arrived.value = new Set(arrived.peek()).add(id);
+  });
+  effect(() => {
+    const id = ownRunId.value;
+    // Told again after each break, as a server that was started anew has forgotten it.
+    if (connection.value !== "live" || id === null || !arrived.value.has(id)) return;
+    untracked(() => noteWatched(code, id)).catch(() => {});
   });
   effect(() => {
     const id = replayed.value;

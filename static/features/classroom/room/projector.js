@@ -1,5 +1,5 @@
 // The projector: code and QR, the card and its question, the robots, and the act that reveals what came of it.
-import { effect, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Icon } from "../../../js/components/elements.js";
@@ -13,7 +13,7 @@ import { Picture } from "./picture.js";
 import { earlyEndOf, isShownToEnd } from "../../../js/narrative/moment.js";
 import { agentOf } from "../../../js/settings.js";
 import { runs, scene } from "../../../js/store.js";
-import { isRevealed, room, shownResults } from "./room.js";
+import { gain, isRevealed, refreshResults, room, shownResults } from "./room.js";
 import { axisOf } from "./scores.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -23,18 +23,35 @@ import { axisOf } from "./scores.js";
 /** Size of the dots, against those of a strip in a panel. */
 const DOTS = 4;
 
+/** For so long the end of a run is looked at. */
+const FINISH_MS = 2500;
+
 /** Ids of the runs that this page has shown to their end. @type {Signal<Set<string>>} */
 const shownToEnd = signal(new Set());
-effect(() => {
+/** Id of the run in the spotlight while its picture is at its end; null else. */
+const atEnd = computed(() => {
   const id = room.value?.spotlight ?? null;
-  if (id !== null && isShownToEnd(scene.value, id) && !shownToEnd.peek().has(id)) {
-    shownToEnd.value = new Set(shownToEnd.peek()).add(id);
-  }
+  return id !== null && isShownToEnd(scene.value, id) ? id : null;
+});
+effect(() => {
+  const id = atEnd.value;
+  if (id === null) return undefined;
+  const timer = setTimeout(() => (shownToEnd.value = new Set(shownToEnd.peek()).add(id)), FINISH_MS);
+  return () => clearTimeout(timer);
 });
 
 /** Whether a run on the stage is still on its way: neither shown to its end, nor lost. @param {string | null} id */
 const isOnItsWay = (id) =>
   id !== null && !shownToEnd.value.has(id) && earlyEndOf(runs.value.get(id) ?? null) === null;
+
+const AGAIN_MS = 2000;
+
+/** Ask again for runs that phones still show: that one of them was closed is told by no event. */
+function askAgain() {
+  if (!shownResults.peek()?.on_their_way) return undefined;
+  const timer = setTimeout(refreshResults, AGAIN_MS);
+  return () => clearTimeout(timer);
+}
 
 /** Whether the class still gathers: nobody has done anything on the first card. @param {Classroom} classroom */
 const isLobby = ({ card, predicted, started, revealed, state }) =>
@@ -45,7 +62,9 @@ export function Projector() {
   const { state } = classroom;
   const facts = {
     classroom, results: shownResults.value, isRevealed: isRevealed.value, isOnItsWay: isOnItsWay(classroom.spotlight),
+    colors: scene.value?.lanes.map(({ color }) => color) ?? [], gain: gain.value,
   };
+  useEffect(askAgain, [shownResults.value]);
   const act = state === "ended" ? null : actOf(facts);
   return html`
     <main class=${`projector ${state}`}>

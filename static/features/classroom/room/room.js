@@ -11,7 +11,7 @@ import { applyEvent, connection, eventNames, options, runs, setEntry } from "../
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../../../js/api.js" */
-/** @import { CardResults, Classroom, RoomState, Run, TeachingEvent } from "../../../js/types.js" */
+/** @import { CardResults, Classroom, Gain, RoomState, Run, TeachingEvent } from "../../../js/types.js" */
 
 /**
  * The code of the address, as it was typed; whether the page is for the projector, of a pupil in any case, or the frame
@@ -29,6 +29,11 @@ export const refusal = signal("");
 export const isRemoved = signal(false);
 /** Card → its results, as far as who asks may see them. @type {Signal<Record<string, CardResults>>} */
 export const results = signal({});
+/** What the class gains by the lesson; null until that is told. @type {Signal<Gain | null>} */
+export const gain = signal(null);
+/** Ids of runs whose pictures have been where their distances can be told, or cannot be had. */
+/** @type {Signal<Set<string>>} */
+export const arrived = signal(new Set());
 const requests = makeRequests();
 export const { busy, failures } = requests;
 const { perform } = requests;
@@ -113,8 +118,11 @@ export async function refreshResults() {
   const { card, role } = room.peek() ?? {};
   if (card === undefined || role === "spectator" && !isProjector) return;
   try {
-    const { cards: [cardResults] } = await api.getResults(code, card, isProjector);
-    setEntry(results, `${card}`, cardResults);
+    const { cards: [cardResults], gain: ofClass } = await api.getResults(code, card, isProjector);
+    batch(() => {
+      setEntry(results, `${card}`, cardResults);
+      gain.value = ofClass;
+    });
   } catch {
     // The next event asks again.
   }

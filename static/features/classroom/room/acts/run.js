@@ -1,20 +1,53 @@
 // A run on the room's stage: one robot that the teacher shows, or the robots of the class that race together.
 import { html } from "../../../../js/components/elements.js";
-import { metres } from "../../../../js/format.js";
+import { count, metres } from "../../../../js/format.js";
 
+/** @import { CardResults } from "../../../../js/types.js" */
 /** @import { Act, Facts } from "./index.js" */
 
+const UNKNOWN = "One of you";
+
+/** @param {Facts} facts */
+const Caption = (facts) => (isClassRace(facts) ? html`<${Racers} ...${facts} />` : html`<${Walker} ...${facts} />`);
+
+/** @param {Facts} facts */
+const isClassRace = ({ classroom, results }) => results?.race?.run_id === classroom.spotlight;
+
 /** Whose robot it is, and how far it came once its picture is there. @param {Facts} facts */
-function Caption({ classroom, results, isOnItsWay }) {
+function Walker({ classroom, results, isOnItsWay }) {
   const entry = results?.entries.find(({ run }) => run?.id === classroom.spotlight);
   const distance_m = isOnItsWay ? null : entry?.run?.distance_m ?? null;
   return html`
     <p class="run-caption">
-      <b>${entry?.name ?? "One of you"}</b>
+      <b>${entry?.name ?? UNKNOWN}</b>
       ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
     </p>
   `;
 }
 
-/** @type {Act} */
-export const RUN = { name: "run", isOn: ({ classroom }) => classroom.spotlight !== null, Show: Caption };
+/** Who races: the best, the median and the last of the class, each in the colour of its lane. @param {Facts} facts */
+const Racers = ({ results, colors }) => html`
+  <ul class="racers">
+    ${racersOf(results).map(({ place, name }, n) => html`
+      <li key=${place}><i style=${{ background: colors[n] ?? "transparent" }}></i>${place}: <b>${name}</b></li>
+    `)}
+    <li class="dim">of ${count(results?.race?.of ?? 0, "robot")}</li>
+  </ul>
+`;
+
+/** The places of a class race with the names of who has them, by lane. @param {CardResults | null} results */
+export function racersOf(results) {
+  const { seeds = [] } = results?.race ?? {};
+  const places = seeds.length === 1 ? ["The only one"] : seeds.length === 2 ? ["Best", "Last"]
+    : ["Best", "Median", "Last"];
+  return seeds.map((seed, n) => ({
+    place: places[n], name: results?.entries.find((entry) => entry.seed === seed)?.name ?? UNKNOWN,
+  }));
+}
+
+/** What is revealed of the card follows the class's race; a robot that the teacher shows stays. @type {Act} */
+export const RUN = {
+  name: "run",
+  isOn: (facts) => facts.classroom.spotlight !== null && (facts.isOnItsWay || !isClassRace(facts)),
+  Show: Caption,
+};
