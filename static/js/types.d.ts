@@ -230,7 +230,7 @@ type Loose<Value> = Value extends (infer Item)[] ? Loose<Item>[]
 export type LessonCard = { text: string, may?: Record<string, Partial<Api.Bounds>>, ask?: Api.Ask | null }
   & Omit<Loose<Api.Card>, "text" | "may" | "ask">;
 /** A lesson, as it is sent. */
-export type LessonDocument = { title: string, language?: string, aims?: string[], cards: LessonCard[] };
+export type LessonDocument = Omit<Api.GivenLesson, "cards"> & { cards: LessonCard[] };
 
 // ---- tournaments
 

@@ -34,8 +34,8 @@ from tests.storage.stores import temporary_store
 
 PAGES = {
     *("/", "/compare", "/docs", "/experiments", "/favicon.ico", "/guide", "/guide/{name}"),
-    *("/l/{lesson_id}", "/lessons", "/openapi.json", "/r/{code}", "/r/{code}/"),
-    *("/robots.txt", "/runs", "/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
+    *("/l/{lesson_id}", "/l/{lesson_id}/sheet", "/lessons", "/openapi.json", "/r/{code}"),
+    *("/r/{code}/", "/robots.txt", "/runs", "/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
 }
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]

@@ -1,18 +1,19 @@
-"""Pages of the classroom: of a room, links to lessons, a room's dashboard."""
+"""Pages of the classroom: of a room, links to lessons, their sheets, a room's dashboard."""
 
 from urllib.parse import quote
 
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import RedirectResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute
 
 from app.api.compression import CompressedContent
 from app.api.deps import Services
 from app.api.pages import page_of
-from app.api.policy import WATCH, GuardedPage, RoutePolicy, policy
+from app.api.policy import OPERATOR, WATCH, GuardedPage, RoutePolicy, policy
 from app.api.problems import as_sentence, problem
 from app.features.classroom.access import BY_CODE
+from app.features.classroom.lesson_sheet import sheet_of
 from app.features.classroom.lessons import Lessons
 from app.features.classroom.names import normalized
 from app.features.classroom.rooms import Rooms
@@ -20,7 +21,7 @@ from app.storage.errors import NotFound
 
 
 def routes(page: CompressedContent) -> list[BaseRoute]:
-    """Return the routes of links to lessons, `/l/ID`, and of rooms, `/r/CODE` and `/r/CODE/`.
+    """Return the routes of lessons, `/l/ID` and its sheet, and of rooms, `/r/CODE` and `/r/CODE/`.
 
     The stage of an open room serves the dashboard at `/r/CODE/`; what is left of it is other
     spellings of the code, and rooms that are not open.
@@ -31,6 +32,7 @@ def routes(page: CompressedContent) -> list[BaseRoute]:
     show_room = page_of(page, lambda services, params: services.of(Rooms).get(params["code"]))
     return [
         GuardedPage("/l/{lesson_id}", _lesson, name="lesson_page"),
+        GuardedPage("/l/{lesson_id}/sheet", _sheet, name="lesson_sheet"),
         GuardedPage("/r/{code}", show_room, RoutePolicy(access=BY_CODE), name="room_page"),
         GuardedPage("/r/{code}/", _room, name="room_stage"),
     ]
@@ -47,6 +49,17 @@ def _lesson(request: Request) -> Response:
         return problem(404, as_sentence(str(error)))
     query = request.scope["query_string"].decode("latin-1")
     return RedirectResponse(f"../?lesson={quote(lesson_id)}{'&' if query else ''}{query}", 303)
+
+
+@policy(access=OPERATOR)
+def _sheet(request: Request) -> Response:
+    """Show the sheet of a lesson for its teacher, which has the answers."""
+    services: Services = request.app.state.services
+    try:
+        stored = services.of(Lessons).get(request.path_params["lesson_id"])
+    except NotFound as error:
+        return problem(404, as_sentence(str(error)))
+    return HTMLResponse(sheet_of(stored.lesson))
 
 
 @policy(access=BY_CODE)

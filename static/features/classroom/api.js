@@ -1,7 +1,7 @@
 // Lessons and rooms over the REST API.
-import { addressOf, call, start } from "../../js/api.js";
+import { addressOf, call, roomAddressOf, start } from "../../js/api.js";
 
-/** @import { Classroom, Joined, LessonDocument, LessonList, LessonView } from "../../js/types.js" */
+/** @import { Classroom, Clock, Joined, LessonDocument, LessonList, LessonView } from "../../js/types.js" */
 /** @import { NewLesson, NewRoom } from "../../js/types.js" */
 /** @import { QTable, Results, Run, TeachingState, WhatIfAnswer } from "../../js/types.js" */
 
@@ -57,6 +57,8 @@ export const stopTeaching = (code) => call("DELETE", `${pathOf(code)}/teaching`)
 export const press = (code, body) => call("POST", `${pathOf(code)}/presses`, body);
 /** The values that a training has learned. @type {(run_id: string) => Promise<QTable>} */
 export const getTable = (run_id) => call("GET", `trainings/${run_id}/q-table?format=json`);
+/** Time the race on a room's stage by a clock. @type {(code: string, clock: Clock) => Promise<unknown>} */
+export const setStageClock = (code, clock) => call("PUT", roomAddressOf(code, "stage"), { clock });
 /** Tell that an own run was watched to its end. @type {(code: string, id: string) => Promise<null>} */
 export const noteWatched = (code, id) => call("PUT", `${pathOf(code)}/runs/${encodeURIComponent(id)}/watched`);
 /** Results of a card; on a projector as the class may see them. */

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { actOf } from "../../../static/features/classroom/room/acts/index.js";
 import { meanCurve } from "../../../static/features/classroom/room/acts/mean-curve.js";
 import { plotAxis, stackedDots } from "../../../static/features/classroom/room/acts/plot-geometry.js";
+import { settingDots } from "../../../static/features/classroom/room/acts/setting-dots.js";
 import { predictionsOf, winsOf } from "../../../static/features/classroom/room/acts/predictions.js";
 import { teaching } from "../../../static/features/classroom/room/teaching.js";
 
@@ -73,6 +74,19 @@ test("the typical curve is the interquartile mean at the steps that all have", (
   assert.ok(Math.abs(first[1] - 0.3) < 1e-9 && Math.abs(second[1] - 1.3) < 1e-9, "the least and the greatest left out");
   assert.deepEqual(meanCurve([[[50, 1]], [[100, 1]]]), []);
   assert.deepEqual(meanCurve([]), []);
+});
+
+test("distances are told by each setting of which the class has tried several values", () => {
+  const entry = (/** @type {any} */ given, /** @type {number | null} */ distance_m) =>
+    /** @type {any} */ ({ run: { given, distance_m } });
+  const entries = [
+    entry({ alpha: 0.1, gait: "tripod", steps: 50 }, 0.3), entry({ alpha: 0.5, gait: "ripple", steps: 50 }, 0.2),
+    entry({ alpha: 0.9 }, null), /** @type {any} */ ({ run: null }),
+  ];
+  assert.deepEqual(settingDots(["alpha", "gait", "steps"], entries), [
+    { name: "alpha", points: [[0.1, 0.3], [0.5, 0.2]], values: null },
+    { name: "gait", points: [[1, 0.3], [0, 0.2]], values: ["ripple", "tripod"] },
+  ]);
 });
 
 test("races are counted by who won them, and answers as far as there are any", () => {

@@ -86,6 +86,20 @@ test("a lesson of the server is edited without what it adds", () => {
   });
 });
 
+test("how long a lesson is, for whom, and its question before and after are kept and sent", () => {
+  const before = { kind: "choice", text: "Who?", choices: ["a", "b"], right: "a" };
+  const view = /** @type {any} */ ({
+    id: "x", title: "Luck", language: "en", minutes: 45, ages: "from 12", aims: ["Wait"], before, after: null,
+    cards: [{ text: "Look." }],
+  });
+  const written = documentOf(view);
+  assert.deepEqual(toSend(written), {
+    title: "Luck", language: "en", minutes: 45, ages: "from 12", aims: ["Wait"], before, cards: [{ text: "Look." }],
+  });
+  assert.equal(toSend({ ...written, before: null, after: /** @type {any} */ (before) }).after, undefined,
+    "what is asked after is compared with what was asked before");
+});
+
 test("lines and numbers are read as they are typed", () => {
   assert.deepEqual(linesOf(" a \n\n b"), ["a", "b"]);
   assert.deepEqual(["0,5", " ", "x", "-1"].map(numberOf), [0.5, null, null, -1]);

@@ -3,10 +3,11 @@ import { shortAddress } from "../../../js/format.js";
 import { copy } from "../../../js/page.js";
 import { lessonFile } from "../api.js";
 import { addCard, changeLesson, chosen, draft, moveCard, removeCard } from "../lessons/draft.js";
-import { linesOf } from "../../../js/parse.js";
+import { linesOf, numberOf } from "../../../js/parse.js";
 import { askForRoom, isBusy, leave, problem, save, saved } from "../lessons/list.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { CardEditor } from "./card-editor.js";
+import { KnowledgeEditor } from "./knowledge-editor.js";
 import { Preview } from "./preview.js";
 
 /** @import { LessonDocument, NewLesson } from "../../../js/types.js" */
@@ -25,6 +26,17 @@ export function Editor() {
       <label for="lesson-aims">Aims, one a line</label>
       <textarea id="lesson-aims" rows="2" value=${(lesson.aims ?? []).join("\n")}
         onChange=${(/** @type {any} */ { target }) => changeLesson({ aims: linesOf(target.value) })}></textarea>
+      <div class="number-rules">
+        <label>Minutes
+          <input type="text" inputmode="numeric" value=${lesson.minutes ?? ""}
+            onChange=${(/** @type {any} */ { target }) => changeLesson({ minutes: numberOf(target.value) })} />
+        </label>
+        <label>Ages
+          <input type="text" maxlength="100" placeholder="from 12" value=${lesson.ages ?? ""}
+            onChange=${(/** @type {any} */ { target }) => changeLesson({ ages: target.value.trim() || null })} />
+        </label>
+      </div>
+      <${KnowledgeEditor} lesson=${lesson} />
       <${CardList} lesson=${lesson} />
       <div role="alert">${problem.value && html`<p class="problem">${problem}</p>`}</div>
       <button class="primary" aria-disabled=${isBusy.value ? "true" : undefined} onClick=${save}>

@@ -7,6 +7,8 @@ import { Answer, draftOf } from "../room/questions.js";
 import { Dialog, html } from "../../../js/components/elements.js";
 import { Prose } from "./prose.js";
 
+/** @import { LessonView } from "../../../js/types.js" */
+
 export function LessonReader() {
   const [isRevealed, setRevealed] = useState(false);
   const number = (cardNumber.value ?? 1) - 1;
@@ -19,6 +21,7 @@ export function LessonReader() {
   return html`
     <${Dialog} isOpen=${readerIsOpen} id="lesson-reader" labelledBy="reader-title" style="reader">
       <p class="dim">${linked.value?.title} · card ${number + 1} of ${linked.value?.cards.length}</p>
+      <${About} lesson=${linked.value} number=${number} />
       <h2 id="reader-title">${card.title ?? `Card ${number + 1}`}</h2>
       <${Prose} text=${texts.text} />
       ${card.ask && html`
@@ -42,6 +45,15 @@ export function LessonReader() {
     <//>
   `;
 }
+
+/** How long the lesson is, for whom, and what it is for: at its first card. */
+/** @param {{ lesson: LessonView, number: number }} props */
+const About = ({ lesson: { minutes, ages, aims }, number }) => number === 0 && html`
+  ${(minutes || ages) && html`
+    <p class="dim">${[minutes && `${minutes}\u00a0minutes`, ages].filter(Boolean).join(" · ")}</p>
+  `}
+  ${aims.length > 0 && html`<ul class="aims">${aims.map((aim) => html`<li key=${aim}>${aim}</li>`)}</ul>`}
+`;
 
 /** Told while parts of the lesson are left out. */
 const Taught = () => linked.value?.is_taught && html`

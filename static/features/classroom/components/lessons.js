@@ -2,8 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { lessonFile } from "../api.js";
 import { wantDialog } from "../../../js/features.js";
-import { count } from "../../../js/format.js";
-import { askForRoom, edit, importFile, lessons, problem, refresh, remove } from "../lessons/list.js";
+import { askForRoom, edit, importFile, lessonInWords, lessons, problem, refresh, remove } from "../lessons/list.js";
 import { begin, draft } from "../lessons/draft.js";
 import { isOperator } from "../../../js/selectors.js";
 import { html, Icon } from "../../../js/components/elements.js";
@@ -58,13 +57,13 @@ function ImportButton() {
 
 /** @param {{ lesson: ListedLesson }} props */
 function Row({ lesson }) {
-  const { id, title, aims, cards, is_built_in } = lesson;
+  const { id, title, aims, is_built_in } = lesson;
   const [willDelete, setWillDelete] = useState(false);
   const deleteWords = willDelete ? "Really delete" : "Delete";
   return html`
     <li>
       <h3>${title}</h3>
-      <p class="dim">${count(cards, "card")}${is_built_in ? " · built in" : " · made here"}</p>
+      <p class="dim">${lessonInWords(lesson)}${is_built_in ? " · built in" : " · made here"}</p>
       ${aims.length > 0 && html`<ul class="aims">${aims.map((aim) => html`<li key=${aim}>${aim}</li>`)}</ul>`}
       <div class="lesson-deeds">
         ${isOperator.value && html`
@@ -75,6 +74,10 @@ function Row({ lesson }) {
         <a class="quiet button" href=${`l/${id}`} aria-label=${`Open here: ${title}`}>Open here</a>
         ${isOperator.value && html`
           <button class="quiet" onClick=${() => edit(id)} aria-label=${`Edit a copy: ${title}`}>Edit a copy</button>
+        `}
+        ${isOperator.value && html`
+          <a class="quiet button" href=${`l/${id}/sheet`} target="_blank"
+            aria-label=${`Sheet for the teacher: ${title}`}>Sheet</a>
         `}
         <a class="quiet button" href=${lessonFile(id)} download="" aria-label=${`YAML file: ${title}`}>YAML</a>
         ${isOperator.value && !is_built_in && html`

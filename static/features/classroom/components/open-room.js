@@ -2,9 +2,9 @@
 import { useEffect, useState } from "preact/hooks";
 import { addressOf } from "../../../js/page-state.js";
 import {
-  chosenLesson, isBusy, isReachable, lessons, opened, openRoom, problem, roomIsOpen, rooms,
+  chosenLesson, isBusy, isReachable, lessonInWords, lessons, opened, openRoom, problem, roomIsOpen, rooms,
 } from "../lessons/list.js";
-import { codeInGroups, count, shortAddress } from "../../../js/format.js";
+import { codeInGroups, shortAddress } from "../../../js/format.js";
 import { Dialog, html } from "../../../js/components/elements.js";
 import { PupilsWindow, Sharing } from "./sharing.js";
 
@@ -50,12 +50,13 @@ function Choice() {
   return html`
     <fieldset class="lesson-choice">
       <legend>Lesson</legend>
-      ${lessons.value.map(({ id, title, cards, is_built_in }) => html`
-        <label key=${id}>
-          <input type="radio" name="lesson" value=${id} checked=${chosenLesson.value === id}
-            onChange=${() => (chosenLesson.value = id)} />
+      ${lessons.value.map((lesson) => html`
+        <label key=${lesson.id}>
+          <input type="radio" name="lesson" value=${lesson.id} checked=${chosenLesson.value === lesson.id}
+            onChange=${() => (chosenLesson.value = lesson.id)} />
           <span>
-            <b>${title}</b><span class="dim">${count(cards, "card")}${is_built_in ? "" : " · made here"}</span>
+            <b>${lesson.title}</b>
+            <span class="dim">${lessonInWords(lesson)}${lesson.is_built_in ? "" : " · made here"}</span>
           </span>
         </label>
       `)}

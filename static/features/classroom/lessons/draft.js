@@ -106,14 +106,15 @@ export function pageAsState() {
 
 /** A lesson of the server as a document that can be edited: without what is null, and what the server adds. */
 /** @type {(lesson: LessonView) => LessonDocument} */
-export const documentOf = ({ title, language, aims, cards }) => without({ title, language, aims, cards });
+export const documentOf = ({ title, language, minutes, ages, aims, before, after, cards }) =>
+  without({ title, language, minutes, ages, aims, before, after, cards });
 
 /** Leave out, at any depth, what is null or empty. @param {any} value @returns {any} */
 function without(value) {
   if (Array.isArray(value)) return value.map(without);
   if (value === null || typeof value !== "object") return value;
   const pairs = Object.entries(value)
-    .filter(([, field]) => field !== null).map(([name, field]) => [name, without(field)]);
+    .filter(([, field]) => field !== null && field !== undefined).map(([name, field]) => [name, without(field)]);
   // Bounds of a setting may be empty: all that is valid.
   return Object.fromEntries(pairs.filter(([, field]) => !isEmpty(field)));
 }
@@ -122,8 +123,9 @@ function without(value) {
 const isEmpty = (value) => Array.isArray(value) && value.length === 0;
 
 /** The draft as it is sent: without texts that are empty. @param {LessonDocument} lesson @returns {LessonDocument} */
-export const toSend = ({ title, language, aims, cards }) => without({
-  title: title.trim(), language: language?.trim() || null, aims: aims ?? [],
+export const toSend = ({ title, language, minutes, ages, aims, before, after, cards }) => without({
+  title: title.trim(), language: language?.trim() || null, minutes: minutes ?? null, ages: ages?.trim() || null,
+  aims: aims ?? [], before: before ?? null, after: before ? after ?? null : null,
   cards: cards.map(({ title: cardTitle, reveal, ...card }) => ({
     ...card, title: cardTitle?.trim() || null, reveal: revealToSend(reveal ?? null),
   })),

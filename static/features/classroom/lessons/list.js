@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import * as api from "../api.js";
 import { call } from "../../../js/api.js";
+import { count } from "../../../js/format.js";
 import { begin, discard, documentOf, draft, toSend } from "./draft.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -104,3 +105,8 @@ export const openRoom = (needs_approval) => perform(async () => {
   opened.value = await api.openRoom({ lesson: chosenLesson.peek(), needs_approval });
   await refresh();
 });
+
+/** How long a lesson is, and for whom. @param {ListedLesson} lesson */
+export const lessonInWords = ({ cards, minutes, ages, has_knowledge_question }) => [
+  count(cards, "card"), minutes && `${minutes}\u00a0min`, ages, has_knowledge_question && "a question before and after",
+].filter(Boolean).join(" · ");

@@ -95,6 +95,16 @@ export const givenInWords = (given, card) => Object.entries(given).map(([name, v
   return title ?? `${setting?.symbol ?? setting?.title.toLowerCase() ?? name}\u00a0${value}`;
 }).join(", ");
 
+/** A setting by its symbol or title, and one of its values in words. @param {string} name @param {LessonCard} card */
+export function settingInWords(name, card) {
+  const setting = settingOf(name, card);
+  const titles = new Map(namesOf(name));
+  return {
+    title: setting?.symbol ?? setting?.title ?? sentence(options.value?.titles[name] ?? name),
+    valueInWords: (/** @type {unknown} */ value) => titles.get(String(value)) ?? String(value),
+  };
+}
+
 /** @param {{ card: LessonCard, number: number, isDisabled: boolean }} props */
 export const May = ({ card, number, isDisabled }) => html`
   <fieldset class="may" disabled=${isDisabled}>

@@ -8,11 +8,13 @@ import { resultsFile } from "../api.js";
 import { PupilsWindow, Sharing } from "../components/sharing.js";
 import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../../../js/page.js";
+import { runs, stage } from "../../../js/store.js";
 import { Away, Failure } from "./join.js";
 import { gainInWords } from "./acts/gain-words.js";
+import { ClockChoice } from "./clocks.js";
 import { People } from "./people.js";
 import {
-  busy, end, freeze, gain, isRevealed, remove, reveal, room, showCard, shownResults, spotlight,
+  busy, end, freeze, gain, isRevealed, remove, reveal, room, setStageClock, showCard, shownResults, spotlight,
 } from "./room.js";
 import { axisOf } from "./scores.js";
 
@@ -148,6 +150,7 @@ function Counts({ classroom }) {
 function Actions({ classroom }) {
   const { state, spotlight: lit } = classroom;
   const isOver = state === "ended";
+  const isRaced = runs.value.get(lit ?? "")?.kind === "race";
   const isRace = lit !== null && lit === shownResults.value?.race?.run_id;
   return html`
     <div class="row deeds-of-all">
@@ -160,6 +163,7 @@ function Actions({ classroom }) {
       `}
     </div>
     ${classroom.shown.teach && html`<${Loaded} name="teaching" load=${loadTeaching} isOver=${isOver} />`}
+    ${lit && isRaced && html`<${ClockChoice} clock=${stage.value?.clock ?? "paper"} onClock=${setStageClock} />`}
     <${Failure} at="freeze" /><${Failure} at="spotlight" />
   `;
 }

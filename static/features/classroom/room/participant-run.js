@@ -1,18 +1,32 @@
 // The own robot of a participant: its picture, how far it is, and what came of it.
 import { html, ProgressBar } from "../../../js/components/elements.js";
+import { page } from "../../../js/page-state.js";
+import { toast } from "../../../js/page.js";
+import { setReplayClock } from "../../../js/player.js";
 import { participantRunNarrative } from "./run-sentences.js";
 import { isAway } from "../../../js/store.js";
 import { givenInWords } from "./allowed-settings.js";
 import { Picture, ReplayBar } from "./picture.js";
-import { arrived, ownEntry, ownRun, replayed, room } from "./room.js";
+import { ClockChoice } from "./clocks.js";
+import { arrived, ownEntry, ownRun, replayed, room, toReplay } from "./room.js";
+
+/** @import { Clock } from "../../../js/types.js" */
 
 export const OwnRobot = () => html`
   <section class="own-robot" aria-label="Your robot">
     <${Picture} />
     <${ReplayBar} />
     <${OwnRun} />
+    ${toReplay.value?.kind === "race" && arrived.value.has(replayed.value ?? "") && html`
+      <${ClockChoice} clock=${page.clock.value} onClock=${chooseClock} />
+    `}
   </section>
 `;
+
+/** Watch the own race by another clock, from its start. @param {Clock} clock */
+const chooseClock = (clock) => {
+  setReplayClock(clock).catch(({ message }) => toast(message));
+};
 
 /** How far the own run is, or what came of it. */
 export function OwnRun() {

@@ -9,6 +9,7 @@ import { codeInGroups, metres, shortAddress } from "../../../js/format.js";
 import { Away } from "./join.js";
 import { actOf } from "./acts/index.js";
 import { walkedRow } from "./acts/distances.js";
+import { clockInWords } from "./clocks.js";
 import { Picture } from "./picture.js";
 import { earlyEndOf, isShownToEnd } from "../../../js/narrative/moment.js";
 import { agentOf } from "../../../js/settings.js";
@@ -63,6 +64,7 @@ export function Projector() {
   const facts = {
     classroom, results: shownResults.value, isRevealed: isRevealed.value, isOnItsWay: isOnItsWay(classroom.spotlight),
     colors: scene.value?.lanes.map(({ color }) => color) ?? [], gain: gain.value,
+    clock: clockInWords(scene.value?.clock),
   };
   useEffect(askAgain, [shownResults.value]);
   const act = state === "ended" ? null : actOf(facts);

@@ -49,19 +49,24 @@ const Choice = ({ ask, locked, draft, onValue }) => html`
   </div>
 `;
 
-/** @param {{ ask: Ask, change: (changes: Partial<Ask>) => unknown }} props */
-const ChoiceEditor = ({ ask, change }) => html`
-  <label for="ask-choices">Answers to choose from, one a line; the name of an agent stands for its win</label>
-  <textarea id="ask-choices" rows="3" value=${(ask.choices ?? []).join("\n")}
+/** @param {{ ask: Ask, change: (changes: Partial<Ask>) => unknown, id?: string }} props */
+const ChoiceEditor = ({ ask, change, id = "ask-choices" }) => html`
+  <label for=${id}>Answers to choose from, one a line; the name of an agent stands for its win</label>
+  <textarea id=${id} rows="3" value=${(ask.choices ?? []).join("\n")}
     onChange=${(/** @type {any} */ { target }) => change({ choices: linesOf(target.value) })}></textarea>
 `;
 
-/** @param {{ ask: Ask, answer: any, change: (answer: string | null) => unknown }} props */
-const RightChoice = ({ ask, answer, change }) => html`
-  <label for="card-answer">The right answer, if the runs do not tell it</label>
-  <select id="card-answer" value=${answer ?? ""}
+/**
+ * `isNeeded`: whether there has to be one.
+ * @typedef {{ ask: Ask, answer: any, change: (answer: any) => unknown, isNeeded?: boolean, id?: string }} RightProps
+ */
+
+/** @param {RightProps} props */
+const RightChoice = ({ ask, answer, change, isNeeded = false, id = "card-answer" }) => html`
+  <label for=${id}>The right answer${isNeeded ? "" : ", if the runs do not tell it"}</label>
+  <select id=${id} value=${answer ?? ""}
     onChange=${(/** @type {any} */ { target }) => change(target.value || null)}>
-    <option value="">None: it follows from the runs</option>
+    <option value="">${isNeeded ? "Choose it" : "None: it follows from the runs"}</option>
     ${(ask.choices ?? []).map((choice) => html`<option key=${choice} value=${choice}>${choice}</option>`)}
   </select>
 `;
@@ -135,10 +140,10 @@ const NumberEditor = ({ ask, change }) => html`
   </div>
 `;
 
-/** @param {{ answer: any, change: (answer: number | null) => unknown }} props */
-const RightNumber = ({ answer, change }) => html`
-  <label for="card-answer">The right number, if the runs do not tell it</label>
-  <input id="card-answer" type="text" inputmode="decimal" value=${answer ?? ""}
+/** @param {RightProps} props */
+const RightNumber = ({ answer, change, isNeeded = false, id = "card-answer" }) => html`
+  <label for=${id}>The right number${isNeeded ? "" : ", if the runs do not tell it"}</label>
+  <input id=${id} type="text" inputmode="decimal" value=${answer ?? ""}
     onChange=${(/** @type {any} */ { target }) => change(numberOf(target.value))} />
 `;
 

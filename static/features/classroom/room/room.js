@@ -11,7 +11,7 @@ import { applyEvent, connection, eventNames, options, runs, setEntry } from "../
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../../../js/api.js" */
-/** @import { CardResults, Classroom, Gain, RoomState, Run, TeachingEvent } from "../../../js/types.js" */
+/** @import { CardResults, Classroom, Clock, Gain, RoomState, Run, TeachingEvent } from "../../../js/types.js" */
 
 /**
  * The code of the address, as it was typed; whether the page is for the projector, of a pupil in any case, or the frame
@@ -288,6 +288,8 @@ export const remove = (withRuns) => perform("end", async () => {
     refusal.value = "You have deleted this room.";
   });
 });
+/** Time the race on the stage by a clock. @param {Clock} clock */
+export const setStageClock = (clock) => perform("spotlight", () => api.setStageClock(room.peek()?.code ?? code, clock));
 /** @param {string | null} run_id */
 export const spotlight = (run_id) => perform("spotlight", changed(() => api.spotlightRun(code, run_id)));
 /** @type {(seed: number, changes: { is_name_hidden?: boolean, is_approved?: boolean }) => Promise<boolean>} */

@@ -2,6 +2,7 @@
 import { html } from "../../../../js/components/elements.js";
 import { agentOf } from "../../../../js/settings.js";
 import { KINDS } from "../questions.js";
+import { BySetting } from "./by-setting.js";
 import { Distances } from "./distances.js";
 import { isRevealOf, predictionsOf, winsOf } from "./predictions.js";
 
@@ -37,7 +38,7 @@ function Reveal(facts) {
         </li>
       `)}
     </ul>
-    ${!isRaced && html`<${Distances} ...${facts} />`}
+    ${!isRaced && html`<${Distances} ...${facts} /><${BySetting} ...${facts} />`}
   `;
 }
 

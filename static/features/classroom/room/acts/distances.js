@@ -1,6 +1,7 @@
 // How far the robots of a class walked, each a dot: all that is revealed of a card that asks nothing.
 import { html } from "../../../../js/components/elements.js";
 import { count, metres } from "../../../../js/format.js";
+import { BySetting } from "./by-setting.js";
 import { DotPlot } from "./plot.js";
 
 /** @import { CardResults, Classroom } from "../../../../js/types.js" */
@@ -36,5 +37,5 @@ export function Distances({ classroom, results }) {
 export const DISTANCES = {
   name: "distances",
   isOn: ({ isRevealed, results }) => isRevealed && (results?.distances_m ?? []).length > 0,
-  Show: Distances,
+  Show: (facts) => html`<${Distances} ...${facts} /><${BySetting} ...${facts} />`,
 };

@@ -14,9 +14,10 @@ import { TEACH } from "./teach.js";
 /**
  * What an act is chosen and drawn from. `isOnItsWay`: whether the stage has a run that is not shown to its end, so that
  * no figure of it may be told. `colors`: of the lanes on the stage. `gain`: of the class, once it is told.
+ * `clock`: that of the race on the stage in words, where it is not the usual one.
  * @typedef {{
  *   classroom: Classroom, results: CardResults | null, isRevealed: boolean, isOnItsWay: boolean, colors: string[],
- *   gain: Gain | null,
+ *   gain: Gain | null, clock: string | null,
  * }} Facts
  */
 /**

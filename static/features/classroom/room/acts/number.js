@@ -2,6 +2,7 @@
 import { html } from "../../../../js/components/elements.js";
 import { count, metres, whole } from "../../../../js/format.js";
 import { PER_METRE } from "../scores.js";
+import { BySetting } from "./by-setting.js";
 import { Distances, walkedRow } from "./distances.js";
 import { DotPlot } from "./plot.js";
 import { isRevealOf, predictionsOf } from "./predictions.js";
@@ -32,6 +33,7 @@ function Reveal(facts) {
       ]}
       right=${right === null ? null : { value: right / scale, label: `right: ${format(right / scale)}` }} />
     ${!isCompared && walked && html`<${Distances} ...${facts} />`}
+    <${BySetting} ...${facts} />
   `;
 }
 

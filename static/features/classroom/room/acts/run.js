@@ -14,24 +14,24 @@ const Caption = (facts) => (isClassRace(facts) ? html`<${Racers} ...${facts} />`
 const isClassRace = ({ classroom, results }) => results?.race?.run_id === classroom.spotlight;
 
 /** Whose robot it is, and how far it came once its picture is there. @param {Facts} facts */
-function Walker({ classroom, results, isOnItsWay }) {
+function Walker({ classroom, results, isOnItsWay, clock }) {
   const entry = results?.entries.find(({ run }) => run?.id === classroom.spotlight);
   const distance_m = isOnItsWay ? null : entry?.run?.distance_m ?? null;
   return html`
     <p class="run-caption">
-      <b>${entry?.name ?? UNKNOWN}</b>
+      <b>${entry?.name ?? UNKNOWN}</b>${clock && html`<span class="dim">${clock}</span>`}
       ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
     </p>
   `;
 }
 
 /** Who races: the best, the median and the last of the class, each in the colour of its lane. @param {Facts} facts */
-const Racers = ({ results, colors }) => html`
+const Racers = ({ results, colors, clock }) => html`
   <ul class="racers">
     ${racersOf(results).map(({ place, name }, n) => html`
       <li key=${place}><i style=${{ background: colors[n] ?? "transparent" }}></i>${place}: <b>${name}</b></li>
     `)}
-    <li class="dim">of ${count(results?.race?.of ?? 0, "robot")}</li>
+    <li class="dim">${clock ?? `of ${count(results?.race?.of ?? 0, "robot")}`}</li>
   </ul>
 `;
 
