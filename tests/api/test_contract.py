@@ -270,8 +270,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     events = subscription.drain()
     subscription.close()
     received = {event.event for event in events}
-    # Each stream has a clock of its own, and a room a stage.
-    assert received | {"snapshot", "clock", "room"} == set(models)
+    # Each stream has a clock of its own, and a room a stage, on which a class teaches.
+    assert received | {"snapshot", "clock", "room", "teaching"} == set(models)
     for name, data in [
         ("snapshot", snapshot),
         *((event.event, event.data) for event in events),
