@@ -237,10 +237,9 @@ def _rounded(value: float) -> str:
 
 
 def in_millimetres(metres: float) -> str:
-    """Return a length for a sentence, with three or more digits: "12.3 mm"."""
-    value = 1000 * float(metres)
-    text = f"{value:.2f} mm" if abs(value) < 10 else f"{value:.1f} mm"
-    return text.replace("-", "−")
+    """Return a length for a sentence, to a tenth of a millimetre, as the page does: "12.3 mm"."""
+    text = f"{1000 * float(metres):.1f} mm"
+    return "0.0 mm" if text == "-0.0 mm" else text.replace("-", "−")
 
 
 def copy_of(rng: np.random.Generator) -> np.random.Generator:

@@ -615,7 +615,6 @@ export interface ChoiceView {
    * of this action in this state.
    */
   probability: number;
-  sentences: string[];
 }
 /**
  * Decisions of a person about a robot from a file; null fields are inferred from the file.
@@ -2482,6 +2481,18 @@ export interface ExplanationView {
    * why the choice is not explained.
    */
   unexplained: string | null;
+  /**
+   * in a sentence what the step brought, and how often its move had been tried here.
+   */
+  what: string;
+  /**
+   * in a sentence why this move was made; null where the choice is not explained.
+   */
+  why: string | null;
+  /**
+   * in a sentence what it passed over or did not see; null where the choice is not explained.
+   */
+  missed: string | null;
 }
 /**
  * Update of the learner's values by a step.
@@ -2548,7 +2559,6 @@ export interface SearchView {
   compares: string;
   transitions: number;
   futures: FutureView[];
-  sentences: string[];
 }
 /**
  * Finding of a search about an action.

@@ -48,6 +48,18 @@ export function millimetres(value) {
 }
 
 /**
+ * A step or a value to a tenth of a millimetre, as the server's sentences have it, without the unit: "24.4".
+ * @param {number} value [m]
+ */
+export function tenths(value) {
+  const text = (1000 * value).toFixed(1);
+  return text === "-0.0" ? "0.0" : text.replace("-", MINUS);
+}
+
+/** The same with its unit: "24.4 mm". @param {number} value [m] */
+export const inMillimetres = (value) => `${tenths(value)}${NO_BREAK}mm`;
+
+/**
  * The duration of one decision: "<1 ms", "12 ms", "1.4 s".
  * @param {Optional} seconds
  */

@@ -33,18 +33,21 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     explained, step = explanation(page), step_number(page)
 
     # It follows the stage, and tells the step as the server explains it.
-    expect(explained).to_contain_text("Q-learning moved legs")
+    expect(explained).to_contain_text("Before the step: legs")
     number = int(step.input_value())
     assert 1 < number < 120
     answer = dashboard.get(f"/api/v1/runs/{run['id']}/explain?step={number}")
-    expect(explained).to_contain_text(answer["choice"]["sentences"][0])
+    # Three sentences, each in one place: what in the head, why and what it missed below.
+    for sentence in (answer["why"], answer["missed"]):
+        expect(explained.get_by_text(sentence, exact=True)).to_have_count(1)
     expect(explained).to_contain_text("new value = (1 − α)")
     expect(explained).to_contain_text("stored value to the last bit")
     # The head of the panel tells the move, and what came of it.
     pair, cell = answer["action"]
     legs, place = "+".join(map(str, answer["pairs"][pair])), answer["cell_names"][cell]
     expect(dashboard.headline).to_have_text(f"Legs {legs} to {place}")
-    expect(dashboard.reason).to_contain_text(re.compile(r"The step brought −?\d+\.\d+\smm"))
+    expect(dashboard.reason).to_have_text(answer["what"])
+    expect(dashboard.panel.get_by_text(answer["what"], exact=True)).to_have_count(1)
     assert dashboard.violations() == []
 
     # Forward, back, and any step by its number; then the stage again.
@@ -52,7 +55,7 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     expect(step).to_have_value(str(number + 1))
     step.fill("1")
     step.press("Enter")
-    expect(explained).to_contain_text("It explores")
+    expect(explained).to_contain_text("It explored: ")
     expect(dashboard.button("One step back")).to_be_disabled()
     reads_the_whole_table(dashboard, run["id"])
     dashboard.button("Follow the stage").click()
@@ -177,8 +180,8 @@ def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serv
     lane.get_by_role("button", name="Greedy").click()
     expect(dashboard.panel).to_contain_text("This lane has no table of a training")
     dashboard.open_tab("Why")
-    expect(explained).to_contain_text("Greedy moved legs")
-    expect(explained).to_contain_text("It simulated 12 steps before it took this one")
+    expect(explained).to_contain_text("It simulated 12 steps and compared the ")
+    expect(explained.get_by_role("heading", name="Values in this state")).to_have_count(0)
     expect(explained.get_by_role("table").last.get_by_role("row")).to_have_count(6)
     assert dashboard.violations() == []
 

@@ -13,6 +13,11 @@ test("metres are rounded to the centimetre, with a true minus and a space that d
   assert.equal(format.metres(NaN), "–");
 });
 
+test("steps and values are rounded to a tenth of a millimetre, and never less than nothing by rounding", () => {
+  assert.deepEqual([0.01515, -0.0123, -0.00004, 0].map(format.tenths), ["15.2", "\u221212.3", "0.0", "0.0"]);
+  assert.equal(format.inMillimetres(0.0244), "24.4\u00a0mm");
+});
+
 test("digits are grouped by a thin space from 10 000 on", () => {
   assert.equal(format.whole(9999), "9999");
   assert.equal(format.whole(10_000), "10\u202f000");

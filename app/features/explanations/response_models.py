@@ -46,7 +46,6 @@ class ChoiceView(Answer):
     epsilon: float | None
     draw: float | None
     probability: Annotated[float, Field(ge=0, le=1)]
-    sentences: list[str]
 
 
 class TermView(Answer):
@@ -132,7 +131,6 @@ class SearchView(Answer):
     compares: str
     transitions: Count
     futures: list[FutureView]
-    sentences: list[str]
 
 
 class ExplanationView(WalkedGrid):
@@ -143,6 +141,10 @@ class ExplanationView(WalkedGrid):
         update: null if it learned nothing from it.
         search: null if it does not search.
         unexplained: why the choice is not explained.
+        what: in a sentence what the step brought, and how often its move had been tried here.
+        why: in a sentence why this move was made; null where the choice is not explained.
+        missed: in a sentence what it passed over or did not see; null where the choice is not
+            explained.
     """
 
     run_id: str
@@ -158,6 +160,9 @@ class ExplanationView(WalkedGrid):
     update: UpdateView | None
     search: SearchView | None
     unexplained: str | None
+    what: str
+    why: str | None
+    missed: str | None
 
 
 class LandingsView(Answer):

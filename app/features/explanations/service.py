@@ -18,12 +18,8 @@ from app.features.explanations.loss import (
 )
 from app.features.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
 from app.features.explanations.response_models import ExplanationView, LossView, TableView
-from app.features.explanations.views import (
-    MAX_VALUES_SHOWN,
-    SearchFindings,
-    explanation_view,
-    table_view,
-)
+from app.features.explanations.sentences import SearchFindings
+from app.features.explanations.views import MAX_VALUES_SHOWN, explanation_view, table_view
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns

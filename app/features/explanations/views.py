@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
+from app.features.explanations.names import ActionNames
 from app.features.explanations.response_models import (
     BeliefView,
     ChoiceView,
@@ -18,14 +18,12 @@ from app.features.explanations.response_models import (
     TermView,
     UpdateView,
     ValueUpdateView,
-    WalkedGrid,
 )
+from app.features.explanations.sentences import SearchFindings, futures_in_order, sentences_of
 from hexapods.agents.explanation import (
     ChoiceExplanation,
-    Future,
     UpdateExplanation,
     ValueUpdate,
-    in_millimetres,
 )
 from hexapods.agents.landing_table import LandingTable
 from hexapods.agents.protocol import Valuing
@@ -41,27 +39,6 @@ MAX_VALUES_SHOWN = 30_000
 """Values in one answer."""
 
 
-class ActionNames:
-    """Names of the actions and states of a walking problem."""
-
-    def __init__(self, walk: WalkingProblem) -> None:
-        self._groups, self._grid = walk.resolved_gait.groups, walk.grid
-
-    def move(self, action: Action) -> str:
-        """Return the name of an action: "legs 1 and 4 to front left"."""
-        legs = " and ".join(map(str, self._groups[action.group]))
-        return f"legs {legs} to {self._grid.name(action.cell)}"
-
-    @property
-    def grid(self) -> WalkedGrid:
-        """The groups of legs and the cells of the foot grid."""
-        return WalkedGrid(
-            pairs=[list(group) for group in self._groups],
-            cells_m=[(x_m, y_m) for x_m, y_m in self._grid.cells.round(5).tolist()],
-            cell_names=[self._grid.name(cell) for cell in range(len(self._grid))],
-        )
-
-
 def explanation_view(
     run_id: str,
     walk: WalkingProblem,
@@ -69,7 +46,7 @@ def explanation_view(
     explained: ExplainedStep,
     *,
     lane: int | None = None,
-    search: "SearchFindings | None" = None,
+    search: SearchFindings | None = None,
     unexplained: str | None = None,
 ) -> ExplanationView:
     """Return an explained step.
@@ -95,74 +72,25 @@ def explanation_view(
         reward_m=logged.reward_m,
         next_observation=list(logged.next_observation) or None,
         visits=None if explained.visits is None else _rows(explained.visits),
-        choice=None if explained.choice is None else _choice(explained, names),
+        choice=None if explained.choice is None else _choice(explained.choice),
         update=None if explained.update is None else _update(explained.update, names),
-        search=None if search is None else _search(search, logged, names),
+        search=None if search is None else _search(search, logged),
         unexplained=unexplained,
+        **vars(sentences_of(explained, search, names)),
     )
 
 
-class SearchFindings(NamedTuple):
-    """Findings of a search before a step.
-
-    Attributes:
-        compares: what it compared.
-        transitions: number of steps that it simulated.
-        futures: what it found about each action.
-    """
-
-    compares: str
-    transitions: int
-    futures: Sequence[Future]
-
-
-def _search(search: SearchFindings, logged: Logged, names: ActionNames) -> SearchView:
-    best_first = sorted(
-        search.futures, key=lambda future: (future.action != logged.action, -future.return_m)
-    )
+def _search(search: SearchFindings, logged: Logged) -> SearchView:
     return SearchView(
         compares=search.compares,
         transitions=search.transitions,
-        futures=[FutureView(**future._asdict()) for future in best_first],
-        sentences=_search_sentences(search, best_first, logged, names),
+        futures=[
+            FutureView(**future._asdict()) for future in futures_in_order(search, logged.action)
+        ],
     )
 
 
-def _search_sentences(
-    search: SearchFindings, best_first: Sequence[Future], logged: Logged, names: ActionNames
-) -> list[str]:
-    """Return the findings of a search in sentences; the first future is that of its action."""
-    chosen, *further = best_first
-    steps = "step" if search.transitions == 1 else "steps"
-    sentences = [
-        f"It simulated {search.transitions:,} {steps} before it took this one, and compared the "
-        f"{search.compares}. {names.move(chosen.action).capitalize()} came first: "
-        f"{in_millimetres(chosen.return_m)} in {chosen.steps} "
-        f"step{'s' * (chosen.steps != 1)}, of which {in_millimetres(chosen.reward_m)} at once."
-    ]
-    if further:
-        other = further[0]
-        sentences.append(
-            f"The next highest, {names.move(other.action)}, promised "
-            f"{in_millimetres(other.return_m)} in {other.steps} step{'s' * (other.steps != 1)}."
-        )
-    missed = logged.reward_m - chosen.reward_m
-    if missed == 0:
-        sentences.append(f"What came is what it foresaw: {in_millimetres(logged.reward_m)}.")
-    else:
-        sentences.append(
-            f"What came was {in_millimetres(logged.reward_m)}, {in_millimetres(abs(missed))} "
-            f"{'more' if missed > 0 else 'less'} than it foresaw."
-        )
-    return sentences
-
-
-def _choice(explained: ExplainedStep, names: ActionNames) -> ChoiceView:
-    choice = explained.choice
-    assert choice is not None  # noqa: S101 - the caller has checked
-    sentences = _reasons(choice, names)
-    if explained.chose_early:
-        sentences.append("It chose so before it learned from the step before, by the values then.")
+def _choice(choice: ChoiceExplanation) -> ChoiceView:
     return ChoiceView(
         kind=choice.kind,
         criterion=choice.criterion,
@@ -173,55 +101,7 @@ def _choice(explained: ExplainedStep, names: ActionNames) -> ChoiceView:
         epsilon=choice.epsilon,
         draw=choice.draw,
         probability=choice.probability,
-        sentences=sentences,
     )
-
-
-def _reasons(choice: ChoiceExplanation, names: ActionNames) -> list[str]:
-    """Return why an action was chosen, why no other, and when another would be."""
-    move, count = names.move(choice.action), int(np.isfinite(choice.scores).sum())
-    sentences = []
-    if choice.kind == "unknown":
-        sentences.append(f"It tries {move} because it does not know yet what that brings.")
-        if len(choice.best) > 1:
-            sentences.append(f"{len(choice.best)} moves are as unknown; one was drawn by lot.")
-        return sentences
-    if choice.kind == "explored":
-        sentences.append(
-            f"It explores: {choice.draw:.3f} was drawn, below ε = {choice.epsilon:.3f}, so one of "
-            f"{count} moves was taken by lot: {move}."
-        )
-        sentences.append(f"By its {choice.criterion} it would {_wanted(choice, names)}.")
-        return sentences
-    drawn = ""
-    if choice.draw is not None:
-        drawn = f", as {choice.draw:.3f} was drawn, not below ε = {choice.epsilon:.3f}"
-    sentences.append(
-        f"It takes what it holds for best{drawn}: {move} has the highest {choice.criterion}: "
-        f"{in_millimetres(choice.scores[choice.action])}."
-    )
-    if len(choice.best) > 1:
-        sentences.append(f"{len(choice.best)} moves are tied; one was drawn by lot.")
-    elif choice.runner_up is not None and choice.margin is not None:
-        sentences.append(
-            f"The next best, {names.move(choice.runner_up)}, is {in_millimetres(choice.margin)} "
-            "worse: were it better by more than that, it would take it."
-        )
-    if choice.epsilon:
-        share = f"{100 * choice.probability:.0f} %"
-        sentences.append(
-            f"With ε = {choice.epsilon:.3f} it does this here in {share} of all cases."
-        )
-    return sentences
-
-
-def _wanted(choice: ChoiceExplanation, names: ActionNames) -> str:
-    if choice.action in choice.best:
-        return "have done the same"
-    if len(choice.best) > 1:
-        return f"have drawn one of {len(choice.best)} tied moves"
-    (best,) = choice.best
-    return f"have moved {names.move(best)}, {in_millimetres(-(choice.margin or 0))} better"
 
 
 def _update(explained: UpdateExplanation, names: ActionNames) -> UpdateView:

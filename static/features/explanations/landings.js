@@ -26,12 +26,6 @@ export function rankedLandings(shown) {
     .map((landing) => ({ ...landing, cells: stateCells(landing.index, shown) }));
 }
 
-/** The range of the values of those that came [m]. @param {Landing[]} landings */
-export function landingRange(landings) {
-  const values = landings.filter(({ visits }) => visits > 0).map(({ value }) => value);
-  return values.length > 0 ? { low: Math.min(...values), high: Math.max(...values) } : { low: 0, high: 0 };
-}
-
 /**
  * The index of the landing of a step.
  * @param {Pick<Explanation, "observation" | "action">} step

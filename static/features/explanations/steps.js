@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { keepAnswer } from "../../js/api.js";
 import { getExplanation, getTable } from "./api.js";
-import { count, THIN_SPACE } from "../../js/format.js";
+import { count, inMillimetres, THIN_SPACE } from "../../js/format.js";
 import { isPlaying, shownRun } from "../../js/on-stage.js";
 import { connection, runs, scene } from "../../js/store.js";
 import { cellName } from "../../js/training.js";
@@ -187,6 +187,16 @@ export function valueRange(shown) {
   return low > high ? { low: 0, high: 0 } : { low, high };
 }
 
+/**
+ * The values that colours begin and end with: of the foot grid in the picture wherever it is of the lane that is looked
+ * at, so that a value has one colour in all views; else those of what is shown.
+ * @param {{ low: number, high: number }} shown
+ */
+export function colourScale(shown) {
+  const drawn = scene.value?.action_values;
+  return drawn && drawn.lane === moment.value?.lane ? { low: drawn.low, high: drawn.high } : shown;
+}
+
 /** Number of the moves that were tried, of those there are. @param {StateTable} shown */
 export function triedMoves(shown) {
   let [tried, all] = [0, 0];
@@ -198,15 +208,6 @@ export function triedMoves(shown) {
     }),
   );
   return { tried, all };
-}
-
-/**
- * Millimetres with two decimals: "12.34 mm".
- * @param {number} metres
- */
-export function fineMillimetres(metres) {
-  const text = Math.abs(1000 * metres).toFixed(2);
-  return `${metres < 0 && Number(text) !== 0 ? "−" : ""}${text} mm`;
 }
 
 /**
@@ -225,8 +226,8 @@ export function cellInWords(shown, row, column) {
   const isBest = columnOf(shown.best[row], shown) === column;
   const worth = {
     stays: "no move: they stand there",
-    untried: value === 0 ? "never tried" : `never tried; taken for ${fineMillimetres(value)}`,
-    tried: `${fineMillimetres(value)}, tried ${visits === 1 ? "once" : count(visits, "time")}`,
+    untried: value === 0 ? "never tried" : `never tried; taken for ${inMillimetres(value)}`,
+    tried: `${inMillimetres(value)}, tried ${visits === 1 ? "once" : count(visits, "time")}`,
   }[kind];
   const isKnown = shown.visits[row].some(Boolean);
   const remark = isKnown ? `best here: ${best}` : "nothing tried here";

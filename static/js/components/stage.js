@@ -3,6 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
+import { inMillimetres, tenths } from "../format.js";
 import { narrative } from "../headline.js";
 import {
   aim, clickedCell, clickedNode, closeLegs, directions, drawHere, inspection, isProjected, isStill, isTaken, legPoints,
@@ -249,17 +250,21 @@ function StagePlaceholder() {
 
 // ---- labels: the run, its conditions and speed, the colours of the foot grid
 
-const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is worth more, grey was never tried";
+/** @param {number} low @param {number} high */
+const gridColours = (low, high) =>
+  `Colours of the foot grid: from ${inMillimetres(low)}, dark, to ${inMillimetres(high)}, light; grey was never tried`;
 
 function StageLabels() {
+  const values = scene.value?.action_values ?? null;
   const labels = useRef(/** @type {HTMLElement | null} */ (null));
   useEffect(() => followCovered(/** @type {HTMLElement} */ (labels.current?.parentElement)), []);
   return html`
     <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
       <${SceneChips} />
-      ${scene.value?.action_values && hasReadableGrid() && html`
-        <p class="chip legend" aria-label=${GRID_COLOURS}>
-          worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried
+      ${values && hasReadableGrid() && html`
+        <p class="chip legend" aria-label=${gridColours(values.low, values.high)}>
+          ${tenths(values.low)}<span class="ramp" aria-hidden="true"></span>${inMillimetres(values.high)}
+          <i aria-hidden="true"></i>never tried
         </p>
       `}
     </div>

@@ -1,5 +1,5 @@
 // The sentences about a race and a practice: who leads or has won, by which rule and why; what a practice has come to.
-import { count, distanceApart, listed, metres, percentage, SAME_MOMENT_S, whole } from "../format.js";
+import { count, distanceApart, inMillimetres, listed, metres, percentage, SAME_MOMENT_S, whole } from "../format.js";
 import { distanceOf, earlyEndOf, isActive, LEVEL_M, madeAt, stepEnds, timeSpent } from "./moment.js";
 
 /** @import { CurvePoint } from "../training.js" */
@@ -239,9 +239,6 @@ const meanStep = ({ ends_m, made, stride }) =>
 /** @param {number[]} ends_m @param {number} from @param {number} to */
 const meanBetween = (ends_m, from, to) => (ends_m[to] - ends_m[from]) / (to - from);
 
-/** @param {number} distance_m of a step */
-const ofStep = (distance_m) => `${(1000 * distance_m).toFixed(1).replace("-", "−")}\u00a0mm`;
-
 /** Whether the timeline has each step of it. @param {Walked[]} lanes */
 const areWhole = (...lanes) => lanes.every(({ stride }) => stride === 1);
 
@@ -278,7 +275,7 @@ function slowedBy(a, b, happened) {
     const isSlower = leader && other && other.before > 0 && other.after < (1 - SHORTER) * other.before;
     if (isSlower && other.before - other.after > leader.before - leader.after) {
       const { before, after } = other;
-      return `${event.words}: ${b.title} went ${ofStep(before)} a step before, ${ofStep(after)} after.`;
+      return `${event.words}: ${b.title} went ${inMillimetres(before)} a step before, ${inMillimetres(after)} after.`;
     }
   }
   return null;
@@ -291,7 +288,7 @@ function longerSteps(a, b) {
   const futures = a.futures.reduce((sum, n) => sum + n, 0) / Math.min(a.made, a.futures.length * a.stride);
   const moves = a.futures.every((n) => n === futures) ? whole(futures) : `about ${whole(futures)}`;
   const search = futures >= 1 ? ` It simulates ${moves} moves before each.` : "";
-  return `Its steps are longer: ${ofStep(first)} against ${ofStep(second)} of ${b.title}.${search}`;
+  return `Its steps are longer: ${inMillimetres(first)} against ${inMillimetres(second)} of ${b.title}.${search}`;
 }
 
 /** @type {(a: Walked, b: Walked) => string | null} */

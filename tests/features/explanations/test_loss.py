@@ -78,8 +78,8 @@ def test_three_sentences_have_the_numbers() -> None:
     assert (loss.better, loss.untried, loss.undervalued) == (2, 2, 0)
     assert "In 10 steps of practice it had tried 1 of the 1500 moves in its table (0 %)" in table
     assert "1 of the 12 moves in the state that it walked through" in table
-    assert "Its 3 steps brought 5.00 mm each on average" in moves
-    assert "would have brought 8.33 mm" in moves
+    assert "Its 3 steps brought 5.0 mm each on average" in moves
+    assert "would have brought 8.3 mm" in moves
     assert better.startswith("In 2 of its 3 steps the best move would have brought at least 1 mm")
     assert better.endswith("in each of them it had never tried that move.")
 

@@ -1,5 +1,6 @@
 """Explained steps of trainings and races, and tables of any moment, over REST."""
 
+import re
 from typing import Any
 
 import pytest
@@ -106,14 +107,17 @@ def test_every_step_of_a_training_explains_the_stored_value(
 
 def test_a_choice_is_explained_in_sentences(api: Api, trained: dict[str, Any]) -> None:
     explanations = [explained(api, trained["id"], step=step) for step in (1, STEPS)]
-    first, last = (" ".join(explanation["choice"]["sentences"]) for explanation in explanations)
+    first, last = explanations
 
-    assert "It explores" in first
-    assert "by lot: legs" in first
+    assert first["what"].endswith("it was the first try of this move from there.")
+    assert first["why"].startswith("It explored: ")
+    assert first["why"].endswith(" moves was taken by lot.")
+    assert first["missed"].startswith("It missed ")
     assert explanations[0]["choice"]["draw"] < explanations[0]["choice"]["epsilon"] == 1
-    assert "It takes what it holds for best" in last
+    assert last["why"].startswith("It took what it holds for best: ")
     assert explanations[1]["choice"]["epsilon"] == 0
-    assert "value in the table" in last
+    assert "value in the table" in last["why"]
+    assert re.search(r"moves would bring that it has never tried|no move has a", last["missed"])
     assert explanations[1]["update"]["summary"].startswith("It got ")
 
 
@@ -126,7 +130,9 @@ def test_steps_of_other_learners_are_explained(api: Api, agent: str) -> None:
     run = api.finished(api.train(agent=agent, steps=30))
     for step in (30, 12, 13):
         explanation = explained(api, run["id"], step=step)
-        assert explanation["choice"]["sentences"]
+        for sentence in (explanation["what"], explanation["why"], explanation["missed"]):
+            assert sentence.endswith(".")
+            assert not sentence.endswith("..")
         assert explanation["update"]["summary"]
         assert explanation["update"]["direct"]["is_exact"]
         assert explanation["unexplained"] is None
@@ -200,8 +206,9 @@ def test_lanes_of_a_race_are_explained(api: Api, trained: dict[str, Any]) -> Non
     best = search["search"]["futures"][0]
     assert best["action"] == search["action"]
     assert best["reward_m"] == best["return_m"] == search["reward_m"]
-    assert "came first" in search["search"]["sentences"][0]
-    assert "What came is what it foresaw" in search["search"]["sentences"][-1]
+    assert search["why"].startswith("It simulated 12 steps and compared the ")
+    assert "this move came first with" in search["why"]
+    assert search["missed"].endswith("; what came is what it foresaw.")
 
 
 def test_steps_and_lanes_that_are_not_there_are_refused(api: Api, trained: dict[str, Any]) -> None:

@@ -1,9 +1,8 @@
 // The action values of the learner in view in its present state: one for each group of legs and each place.
 import { bestMove, cellName } from "../../../js/training.js";
-import { count, millimetres, whole } from "../../../js/format.js";
+import { count, inMillimetres, tenths, whole } from "../../../js/format.js";
 import { valueColours } from "../../../js/scale.js";
 import { shownRun } from "../../../js/on-stage.js";
-import { agentOf } from "../../../js/settings.js";
 import { options, scene } from "../../../js/store.js";
 import { isAtLeast } from "../../../js/workspace.js";
 import { HexapodGlyph, html } from "../../../js/components/elements.js";
@@ -12,16 +11,22 @@ import { HexapodGlyph, html } from "../../../js/components/elements.js";
 
 const ABOUT = "Millimetres forward that it expects from moving a group of legs to a place, and from what follows";
 
-export function ActionValues() {
-  const values = scene.value?.action_values;
+/** Of the lane whose foot grid is in the picture. @param {{ lane: number }} props */
+export function ActionValues({ lane }) {
+  const values = valuesOf(lane);
   return values && html`
     <section class="panel action-values" aria-labelledby="action-values-title">
       <h3 id="action-values-title" title=${ABOUT}>Values in this state [mm]</h3>
       <${Values} known=${values} />
       ${values.visits && isAtLeast("study") && html`<${ValuesKey} />`}
-      ${isAtLeast("study") && html`<p class="next-move"><${NextMove} known=${values} /></p>`}
     </section>
   `;
+}
+
+/** The values in the picture, if they are of a lane. @param {number} lane */
+export function valuesOf(lane) {
+  const values = scene.value?.action_values;
+  return values?.lane === lane ? values : null;
 }
 
 /** @param {{ known: Known }} props */
@@ -65,35 +70,18 @@ function Value({ known, pair, cell }) {
   if (visits === 0) return html`<td class=${`untried ${mark}`}>never${nextMove}</td>`;
   return html`
     <td class=${mark} style=${valueColours(value, known.low, known.high)}>
-      ${millimetres(value)}${visits !== null && html`
+      ${tenths(value)}${visits !== null && html`
         <small aria-hidden="true">${whole(visits)}×</small><span class="sr-only">, tried ${count(visits, "time")}</span>
       `}${nextMove}
     </td>
   `;
 }
 
+const EXAMPLE_M = 0.012;
+
 const ValuesKey = () => html`
   <p class="values-key dim">
     <span><i class="untried" aria-hidden="true"></i>never tried</span>
-    <span><b>12</b> <small>5×</small> worth 12 mm, tried 5 times</span>
+    <span><b>${tenths(EXAMPLE_M)}</b> <small>5×</small> worth ${inMillimetres(EXAMPLE_M)}, tried 5 times</span>
   </p>
 `;
-
-/** The learner's next move in words. @param {{ known: Known }} props */
-function NextMove({ known }) {
-  const { pairs, values_m, visits, lane, agent } = known;
-  const best = bestMove(known);
-  const { pair, cell } = known.next ?? best;
-  if (pair < 0) return null;
-  const value = values_m[pair][cell] ?? 0;
-  const tried = visits?.[pair]?.[cell] ?? 0;
-  const { name = agentOf(agent).title, done, halted } = scene.value?.lanes?.[lane] ?? {};
-  const legs = new Intl.ListFormat("en").format(pairs[pair].map(String));
-  const move = `${name} ${done || halted ? "would" : "will"} move legs ${legs} to ${cellName(known, cell, " mm")}`;
-  const times = tried === 1 ? "once" : count(tried, "time");
-  return html`
-    <b>${move}${value < best.value ? " to explore" : ""}.</b> ${tried
-      ? `It has tried that ${times} from here, and expects ${millimetres(value)} mm from it and what follows.`
-      : "It has never tried that from here."}
-  `;
-}

@@ -1,7 +1,6 @@
 // An explained step: the move, its reason, and the update of the values, as the rule with its numbers.
-import { agentOf } from "../../../js/settings.js";
-import { count } from "../../../js/format.js";
-import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords } from "../steps.js";
+import { count, inMillimetres } from "../../../js/format.js";
+import { colourScale, comparedNumber, moveInWords, ruleNumber, stateInWords } from "../steps.js";
 import { percent, shareOf, valueColours } from "../../../js/scale.js";
 import { isAtLeast } from "../../../js/workspace.js";
 import { html } from "../../../js/components/elements.js";
@@ -15,33 +14,27 @@ const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
 const MAX_MOVES = { study: 6, other: 4 };
 const SHORTEST_BAR = 0.02;
 
+/** Why its move was made and what it missed, each in a sentence. @param {{ told: Explanation }} props */
+export const Reasons = ({ told: { why, missed, unexplained } }) => html`
+  <section class="reasons">
+    <h3>Why this move</h3>
+    <p class=${why ? "" : "dim"}>${why ?? sentenceOf(unexplained ?? "Its agent does not explain it")}</p>
+    ${missed && html`<h3>What it missed</h3><p>${missed}</p>`}
+  </section>
+`;
+
 /**
- * `isFull`: with where its feet were, and the update of its values as the rule with its numbers.
- * @param {{ told: Explanation, isFull: boolean }} props
+ * `isFull`: with where its feet were, and the update of its values as the rule with its numbers. `isRanked`: with the
+ * scores of the moves, where no other view has them.
+ * @param {{ told: Explanation, isFull: boolean, isRanked: boolean }} props
  */
-export const ExplainedStep = ({ told, isFull }) => html`
+export const ExplainedStep = ({ told, isFull, isRanked }) => html`
   <div class="told">
-    ${isFull && html`<${Happened} told=${told} />`}
-    <${Choice} told=${told} />
+    ${isFull && html`<p class="dim told-state">Before the step: ${stateInWords(told.observation, told)}.</p>`}
+    ${told.search ? html`<${Futures} told=${told} />` : isRanked && told.choice && html`<${Scores} told=${told} />`}
     ${isFull && html`<${Update} told=${told} />`}
   </div>
 `;
-
-/** @param {{ told: Explanation }} props */
-function Happened({ told }) {
-  const { reward_m } = told;
-  const visits = triesOf(told, told.action);
-  const before = visits ? `, which it had tried ${times(visits)} before` : ", for the first time";
-  const tried = visits === null ? "" : before;
-  const went = reward_m < 0 ? "back" : "forward";
-  return html`
-    <p>
-      <b>${agentOf(told.agent).title} moved ${moveInWords(told.action, told)}</b>${tried}. That brought it
-      ${" "}<b>${fineMillimetres(Math.abs(reward_m))} ${went}</b>.
-      <span class="dim told-state">Before the step: ${stateInWords(told.observation, told)}.</span>
-    </p>
-  `;
-}
 
 /**
  * Number of trials of a move there; null where they are not counted.
@@ -50,49 +43,18 @@ function Happened({ told }) {
  */
 const triesOf = ({ visits }, [pair, cell]) => visits?.[pair]?.[cell] ?? null;
 
-/** @param {number} visits */
-const times = (visits) => (visits === 1 ? "once" : count(visits, "time"));
-
-// ---- why this move
-
-/** @param {{ told: Explanation }} props */
-function Choice({ told }) {
-  const { choice, search, unexplained } = told;
-  if (search) return html`<${Search} told=${told} />`;
-  if (!choice) {
-    return html`
-      <section>
-        <h3>Why this move</h3>
-        <p class="dim">${sentenceOf(unexplained ?? "Its agent does not explain it")}</p>
-      </section>
-    `;
-  }
-  return html`
-    <section>
-      <h3>Why this move</h3>
-      ${choice.sentences.map((sentence) => html`<p>${sentence}</p>`)}
-      <${Scores} told=${told} />
-    </section>
-  `;
-}
-
 /** @param {string} text */
 const sentenceOf = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!]$/.test(text) ? "" : "."}`;
 
+/** What a search compared: no values that were learned, and in no colours of these. */
 /** @param {{ told: Explanation }} props */
-function Search({ told }) {
-  const { sentences, futures, compares } = /** @type {NonNullable<Explanation["search"]>} */ (told.search);
+function Futures({ told }) {
+  const { futures, compares } = /** @type {NonNullable<Explanation["search"]>} */ (told.search);
   const rows = futures.map(({ action, return_m, reward_m, steps, sequences }) => ({
     move: action, score: return_m,
-    note: `${fineMillimetres(reward_m)} at once; ${count(sequences, "sequence")} of ${count(steps, "step")}`,
+    note: `${inMillimetres(reward_m)} at once; ${count(sequences, "sequence")} of ${count(steps, "step")}`,
   }));
-  return html`
-    <section>
-      <h3>Why this move</h3>
-      ${sentences.map((sentence) => html`<p>${sentence}</p>`)}
-      <${Ranking} told=${told} caption=${compares} rows=${rows} />
-    </section>
-  `;
+  return html`<${Ranking} told=${told} caption=${compares} rows=${rows} colour=${null} />`;
 }
 
 /** The moves with the highest scores, and the one that was made. @param {{ told: Explanation }} props */
@@ -101,13 +63,21 @@ function Scores({ told }) {
   const rows = scores.flatMap((row, pair) => row.map((score, cell) => ({
     move: [pair, cell], score, note: triesOf(told, [pair, cell]) === 0 ? "never tried" : "",
   })));
-  return html`<${Ranking} told=${told} caption=${criterion} rows=${rows.filter(({ score }) => score !== null)} />`;
+  const scored = rows.filter(({ score }) => score !== null);
+  const values = scored.map(({ score }) => Number(score));
+  const scale = colourScale({ low: Math.min(0, ...values), high: Math.max(...values) });
+  return html`<${Ranking} told=${told} caption=${criterion} rows=${scored} colour=${scale} />`;
 }
 
 /** @typedef {{ move: Move, score: number, note: string }} RankedMove */
 
-/** @param {{ told: Explanation, caption: string, rows: RankedMove[] }} props */
-function Ranking({ told, caption, rows }) {
+/**
+ * `colour`: the scale of values whose colours the bars have; null for none.
+ * @param {{
+ *   told: Explanation, caption: string, rows: RankedMove[], colour: { low: number, high: number } | null
+ * }} props
+ */
+function Ranking({ told, caption, rows, colour }) {
   const all = rows.toSorted((a, b) => b.score - a.score);
   /** @param {{ move: Move }} move */
   const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
@@ -124,8 +94,8 @@ function Ranking({ told, caption, rows }) {
               ${moveInWords(action.move, told)}${isMade(action) && html`<span class="sr-only">, made</span>`}
               ${action.note && html`<span class="dim note">${action.note}</span>`}
             </th>
-            <td class="score-bar" aria-hidden="true"><i style=${barOf(action.score, low, high)}></i></td>
-            <td>${fineMillimetres(action.score)}</td>
+            <td class="score-bar" aria-hidden="true"><i style=${barOf(action.score, low, high, colour)}></i></td>
+            <td>${inMillimetres(action.score)}</td>
           </tr>
         `)}
       </tbody>
@@ -134,10 +104,10 @@ function Ranking({ told, caption, rows }) {
   `;
 }
 
-/** @param {number} score @param {number} low @param {number} high */
-const barOf = (score, low, high) => ({
+/** @type {(score: number, low: number, high: number, colour: { low: number, high: number } | null) => object} */
+const barOf = (score, low, high, colour) => ({
   width: percent(Math.max(SHORTEST_BAR, shareOf(score, low, high))),
-  background: valueColours(score, low, high).background,
+  background: colour ? valueColours(score, colour.low, colour.high).background : "var(--dim)",
 });
 
 // ---- the update
@@ -188,8 +158,8 @@ function Rule({ update, stored }) {
 
 /** @param {number} value @param {number | null} deviation @param {string} unit */
 const withDeviation = (value, deviation, unit) => {
-  const text = unit === "m" ? fineMillimetres(value) : ruleNumber(value);
-  return deviation === null ? text : `${text} ± ${fineMillimetres(deviation)}`;
+  const text = unit === "m" ? inMillimetres(value) : ruleNumber(value);
+  return deviation === null ? text : `${text} ± ${inMillimetres(deviation)}`;
 };
 
 /** @param {{ beliefs: Belief[] }} props */

@@ -1,21 +1,18 @@
 // The table as a heatmap: a row a state, a column a move. Read by pointer, finger and keys, one cell at a time.
-import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { valueColours } from "../../../js/scale.js";
 import {
-  cellInWords, cellKind, columnOf, fineMillimetres, moveOf, stateCells, stateIndex, triedMoves, valueRange,
+  cellInWords, colourScale, columnOf, moveOf, stateCells, stateIndex, triedMoves, valueRange,
 } from "../steps.js";
-import { percentage, sentence, whole } from "../../../js/format.js";
-import { theme } from "../../../js/page.js";
+import { inMillimetres, percentage, sentence, whole } from "../../../js/format.js";
 import { html } from "../../../js/components/elements.js";
 import { ChosenStateNote } from "./chosen-state.js";
+import { Cells, Feet, ROW_PX, widthOfFeet } from "./table-drawing.js";
 
 /** @import { StateTable } from "../../../js/types.js" */
 /** @import { ChosenState } from "../posture.js" */
+/** @import { Scale } from "./table-drawing.js" */
 
-const ROW_PX = 12;
-const GAP_PX = 2;
-const HATCH_PX = 6;
-const DOT_PX = 2;
 const PAGE_ROWS = 10;
 
 /** @typedef {{ row: number, column: number }} Place */
@@ -55,6 +52,7 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
   const at = read ?? chosenCell ?? { row: marked ?? 0, column: column ?? 0 };
   const place = { row: clamped(at.row, last.row), column: clamped(at.column, last.column) };
   const words = cellInWords(shown, place.row, place.column);
+  const scale = colourScale(valueRange(shown));
   /** @param {Place} cell */
   const choose = (cell) => onChoose(stateCells(shown.first + cell.row, shown), moveOf(cell.column, shown));
   /** @param {Event & { currentTarget: HTMLElement }} event */
@@ -81,8 +79,8 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
       <${Columns} shown=${shown} />
       <${Grid} shown=${shown} last=${last} place=${place} words=${words} marked=${marked} column=${column}
         chosen=${chosen} held=${chosenCell} onPlace=${setRead} onChoose=${choose}
-        isChosen=${(read ?? chosenCell) !== null} />
-      <${Key} shown=${shown} />
+        isChosen=${(read ?? chosenCell) !== null} scale=${scale} />
+      <${Key} shown=${shown} scale=${scale} />
     </div>
   `;
 }
@@ -113,8 +111,9 @@ function rowOf(cells, shown) {
  * @param {Place | null} props.held
  * @param {number | null} props.marked
  * @param {number | null} props.column
+ * @param {Scale} props.scale
  */
-function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, held, marked, column }) {
+function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, held, marked, column, scale }) {
   const scroller = useRef(/** @type {HTMLElement | null} */ (null));
   useLayoutEffect(() => {
     if (marked !== null && !isChosen) scrollTo(scroller.current, marked);
@@ -141,19 +140,23 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, 
     "Enter puts a ghost of the robot into the state";
   return html`
     <div class="heat-scroll" ref=${scroller}>
-      <div class="heat-body" role="grid" tabindex="0" aria-label=${label}
-        aria-rowcount=${shown.states} aria-colcount=${last.column + 1} aria-activedescendant=${idOf(place)}
-        style=${{ height: `${ROW_PX * (last.row + 1)}px` }} onKeyDown=${onKeyDown} onBlur=${() => onPlace(null)}
-        ...${pointerHandlers(last, onPlace, onChoose, held !== null)}>
-        <${Cells} shown=${shown} />
-        ${marked !== null && html`<${Frame} name="heat-row" row=${marked} last=${last} />`}
-        ${held && heldRow !== marked && html`<${Frame} name="heat-chosen" row=${held.row} last=${last} />`}
-        ${column !== null && html`<${Frame} name="heat-move" row=${marked} column=${column} last=${last} />`}
-        ${isChosen && html`<${Frame} name="heat-cell" ...${place} last=${last} />`}
-        <div role="row" class="sr-only" aria-rowindex=${shown.first + place.row + 1}>
-          <div role="gridcell" id=${idOf(place)} key=${idOf(place)} aria-colindex=${place.column + 1}
-            aria-selected=${place.row === heldRow ? "true" : "false"}>
-            ${words.move} where ${words.state}: ${words.worth}, ${words.about}
+      <div class="heat-rows">
+        <${Feet} shown=${shown} />
+        <div class="heat-body" role="grid" tabindex="0" aria-label=${label}
+          aria-rowcount=${shown.states} aria-colcount=${last.column + 1} aria-activedescendant=${idOf(place)}
+          style=${{ height: `${ROW_PX * (last.row + 1)}px` }} onKeyDown=${onKeyDown} onBlur=${() => onPlace(null)}
+          ...${pointerHandlers(last, onPlace, onChoose, held !== null)}>
+          <${Cells} shown=${shown} scale=${scale} />
+          ${marked !== null && html`<${Frame} name="heat-row" row=${marked} last=${last} />`}
+          ${held && heldRow !== marked && html`<${Frame} name="heat-chosen" row=${held.row} last=${last} />`}
+          ${column !== null && html`<${Frame} name="heat-move" row=${marked} column=${column} last=${last} />`}
+          ${isChosen && html`<${Frame} name="heat-cell" ...${place} last=${last} />`}
+          <div role="row" class="sr-only" aria-label=${sentence(words.state)}
+            aria-rowindex=${shown.first + place.row + 1}>
+            <div role="gridcell" id=${idOf(place)} key=${idOf(place)} aria-colindex=${place.column + 1}
+              aria-selected=${place.row === heldRow ? "true" : "false"}>
+              ${words.move} where ${words.state}: ${words.worth}, ${words.about}
+            </div>
           </div>
         </div>
       </div>
@@ -237,123 +240,25 @@ function Frame({ name, row, column = null, last }) {
 
 /** @param {{ shown: StateTable }} props */
 const Columns = ({ shown }) => html`
-  <div class="heat-columns dim" aria-hidden="true">
+  <div class="heat-columns dim" aria-hidden="true" style=${{ paddingLeft: `${widthOfFeet(shown)}px` }}>
     ${shown.pairs.map((legs) => html`<span>Legs ${legs.join(" + ")}</span>`)}
   </div>
 `;
 
-/** @param {{ shown: StateTable }} props */
-function Cells({ shown }) {
-  const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
-  const [width, setWidth] = useState(0);
-  useLayoutEffect(() => {
-    const host = /** @type {HTMLElement} */ (canvas.current?.parentElement);
-    setWidth(host.clientWidth);
-    const observer = new ResizeObserver(() => setWidth(host.clientWidth));
-    observer.observe(host);
-    return () => observer.disconnect();
-  }, []);
-  const mode = theme.value;
-  useEffect(() => {
-    const redraw = () => canvas.current && draw(canvas.current, shown, width);
-    redraw();
-    const media = matchMedia("(prefers-color-scheme: dark)");
-    media.addEventListener("change", redraw);
-    return () => media.removeEventListener("change", redraw);
-  }, [shown, width, mode]);
-  return html`<canvas ref=${canvas} aria-hidden="true"></canvas>`;
-}
-
-/**
- * Moves never tried are hatched, as in the table of one state; the best move of a state has a dot.
- * @param {HTMLCanvasElement} canvas
- * @param {StateTable} shown
- * @param {number} width
- */
-function draw(canvas, shown, width) {
-  const rows = shown.values.length;
-  const columns = shown.values[0].length;
-  const scale = Math.min(devicePixelRatio || 1, 2);
-  Object.assign(canvas, { width: Math.max(1, Math.round(width * scale)), height: Math.round(rows * ROW_PX * scale) });
-  const context = canvas.getContext("2d");
-  if (!context || !width) return;
-  context.scale(scale, scale);
-  const colour = coloursOf(canvas.parentElement ?? canvas);
-  const [sunk, line, dim] = [colour("--sunk"), colour("--line"), colour("--dim")];
-  const hatch = hatched(context, sunk, line);
-  const { low, high } = valueRange(shown);
-  const cellsOfPair = shown.cell_names.length;
-  for (let row = 0; row < rows; row += 1) {
-    const best = columnOf(shown.best[row], shown);
-    for (let column = 0; column < columns; column += 1) {
-      const left = (column * width) / columns;
-      const right = ((column + 1) * width) / columns - (column % cellsOfPair === cellsOfPair - 1 ? GAP_PX : 0.5);
-      /** @type {[number, number, number, number]} */
-      const box = [left, row * ROW_PX, right - left, ROW_PX - 1];
-      const kind = cellKind(shown, row, column);
-      if (kind === "stays") {
-        context.fillStyle = dim;
-        context.fillRect((left + right) / 2 - 2, row * ROW_PX + ROW_PX / 2 - 1, 4, 1);
-        continue;
-      }
-      const colours = valueColours(shown.values[row][column] ?? 0, low, high);
-      context.fillStyle = kind === "tried" ? colours.background : hatch;
-      context.fillRect(...box);
-      if (kind !== "tried" || column !== best) continue;
-      context.fillStyle = colours.color;
-      context.beginPath();
-      context.arc((left + right) / 2, row * ROW_PX + (ROW_PX - 1) / 2, DOT_PX, 0, 2 * Math.PI);
-      context.fill();
-    }
-  }
-}
-
-/** @param {CanvasRenderingContext2D} context @param {string} ground @param {string} stroke */
-function hatched(context, ground, stroke) {
-  const tile = document.createElement("canvas");
-  Object.assign(tile, { width: HATCH_PX, height: HATCH_PX });
-  const pen = tile.getContext("2d");
-  if (!pen) return ground;
-  pen.fillStyle = ground;
-  pen.fillRect(0, 0, HATCH_PX, HATCH_PX);
-  pen.strokeStyle = stroke;
-  pen.lineWidth = 1.5;
-  pen.beginPath();
-  for (const shift of [-HATCH_PX, 0, HATCH_PX]) {
-    pen.moveTo(shift, HATCH_PX);
-    pen.lineTo(shift + HATCH_PX, 0);
-  }
-  pen.stroke();
-  return context.createPattern(tile, "repeat") ?? ground;
-}
-
-/** @param {{ shown: StateTable }} props */
-function Key({ shown }) {
-  const { low, high } = valueRange(shown);
+/** @param {{ shown: StateTable, scale: Scale }} props */
+function Key({ shown, scale: { low, high } }) {
   const { tried, all } = triedMoves(shown);
   const steps = [0, 0.25, 0.5, 0.75, 1];
   const stops = steps.map((share) => valueColours(share, 0, 1).background);
   return html`
     <p class="values-key dim">
       <span><i class="untried" aria-hidden="true"></i>never tried</span>
-      <span>${fineMillimetres(low)}
+      <span>${inMillimetres(low)}
         <i class="heat-scale" aria-hidden="true" style=${{ background: `linear-gradient(90deg, ${stops})` }}></i>
-        ${fineMillimetres(high)}</span>
+        ${inMillimetres(high)}</span>
       <span>• best move of its state</span>
       <span>– where they stand</span>
       <span>${percentage(tried / all)} of ${whole(all)} moves tried</span>
     </p>
   `;
-}
-
-/** A function that resolves custom properties, which a canvas does not. @param {Element} host */
-function coloursOf(host) {
-  const probe = document.createElement("span");
-  return (/** @type {string} */ name) => {
-    host.append(probe);
-    probe.style.color = `var(${name})`;
-    const computedColor = getComputedStyle(probe).color;
-    probe.remove();
-    return computedColor;
-  };
 }

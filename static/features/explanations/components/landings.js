@@ -1,8 +1,8 @@
 // The table of a learner that values landings: a row a landing, the best first.
-import { whole } from "../../../js/format.js";
-import { landingOf, landingRange, MAX_LANDINGS, pairsOfLanding, rankedLandings } from "../landings.js";
+import { inMillimetres, whole } from "../../../js/format.js";
+import { landingOf, MAX_LANDINGS, pairsOfLanding, rankedLandings } from "../landings.js";
 import { valueColours } from "../../../js/scale.js";
-import { fineMillimetres, legsInWords } from "../steps.js";
+import { colourScale, legsInWords, valueRange } from "../steps.js";
 import { html } from "../../../js/components/elements.js";
 
 /** @import { Explanation, StateTable } from "../../../js/types.js" */
@@ -17,7 +17,7 @@ export function Landings({ shown, seen }) {
   const landings = rankedLandings(shown);
   const came = shown.landings?.visits.filter((visits) => visits > 0).length ?? 0;
   const landed = seen ? landingOf(seen, shown) : null;
-  const range = landingRange(landings);
+  const range = colourScale(valueRange(shown));
   return html`
     <div class="landings">
       <p>
@@ -61,7 +61,7 @@ const Row = ({ landing: { cells, value, visits }, range, names, isLanded }) => h
     ${cells.map((cell) => html`<td>${names[cell]}</td>`)}
     ${visits > 0
       ? html`<td class="number"><span class="landing-value" style=${valueColours(value, range.low, range.high)}>
-          ${fineMillimetres(value)}</span></td>`
+          ${inMillimetres(value)}</span></td>`
       : html`<td class="number dim">–</td>`}
     <td class="number ${visits > 0 ? "" : "dim"}">${visits > 0 ? whole(visits) : "never"}</td>
   </tr>

@@ -3,8 +3,8 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { comparable } from "../../../js/compare.js";
 import { askAgain, differencesOf, followTables, haveSameStates, tableOf } from "../policies.js";
-import { count, percentage, whole } from "../../../js/format.js";
-import { fineMillimetres, moveInWords, stateCells, stateInWords } from "../steps.js";
+import { count, inMillimetres, percentage, whole } from "../../../js/format.js";
+import { moveInWords, stateCells, stateInWords } from "../steps.js";
 import { html } from "../../../js/components/elements.js";
 import { Key } from "../../../js/components/compare/key.js";
 
@@ -132,7 +132,7 @@ const States = ({ shown, grid }) => html`
             <th scope="row">${stateInWords(stateCells(index, grid), grid)}</th>
             ${bests.map(({ move, value, visits }) => html`
               <td>
-                ${moveInWords(move, grid)}, <b class="num">${value === null ? "–" : fineMillimetres(value)}</b>
+                ${moveInWords(move, grid)}, <b class="num">${value === null ? "–" : inMillimetres(value)}</b>
                 ${" "}<span class="dim">${count(visits, "visit")}</span>
               </td>
             `)}

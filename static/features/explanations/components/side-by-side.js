@@ -3,6 +3,7 @@ import { useEffect } from "preact/hooks";
 import { percentage, whole } from "../../../js/format.js";
 import { valueColours } from "../../../js/scale.js";
 import { agentOf } from "../../../js/settings.js";
+import { colourScale } from "../steps.js";
 import { followLaneTables, laneTables, mapOf, trainedLanes } from "../tables.js";
 import { html } from "../../../js/components/elements.js";
 import { Trouble, Waiting } from "./navigator.js";
@@ -24,7 +25,9 @@ export function SideBySide() {
       ${!answer && !error && html`<${Waiting} />`}
       ${answer && html`
         <div class="maps" style=${{ "--tables": String(answer.length) }}>
-          ${answer.map((lane) => html`<${TableMapFigure} key=${lane.training_id} lane=${lane} />`)}
+          ${mapsOf(answer).map(({ lane, map }) => html`
+            <${TableMapFigure} key=${lane.training_id} lane=${lane} map=${map} />
+          `)}
         </div>
         <p class="dim fine">
           A row for each state, and a column for each move from there; of landings one value in a row.
@@ -35,9 +38,17 @@ export function SideBySide() {
   `;
 }
 
-/** @param {{ lane: LaneTable }} props */
-function TableMapFigure({ lane }) {
-  const map = mapOf(lane.table);
+/** All maps have one scale of colours: a value has the same in each. @param {LaneTable[]} lanes */
+function mapsOf(lanes) {
+  const maps = lanes.map((lane) => mapOf(lane.table));
+  const scale = colourScale({
+    low: Math.min(...maps.map(({ low }) => low)), high: Math.max(...maps.map(({ high }) => high)),
+  });
+  return lanes.map((lane, n) => ({ lane, map: { ...maps[n], ...scale } }));
+}
+
+/** @param {{ lane: LaneTable, map: TableMap }} props */
+function TableMapFigure({ lane, map }) {
   const { title, color } = agentOf(lane.agent);
   const share = percentage(map.tried / map.all);
   const words = `${whole(map.tried)} of ${whole(map.all)} ${map.kind} tried`;

@@ -3,11 +3,11 @@ import { useEffect } from "preact/hooks";
 import { sentence, whole } from "../../../js/format.js";
 import { moveTold } from "../../../js/headline.js";
 import { agentOf } from "../../../js/settings.js";
-import { explanation, fineMillimetres, isFollowing, moment, moveInWords } from "../steps.js";
+import { explanation, isFollowing, moment, moveInWords } from "../steps.js";
 import { isAtLeast } from "../../../js/workspace.js";
 import { html } from "../../../js/components/elements.js";
-import { ActionValues } from "./action-values.js";
-import { ExplainedStep } from "./explanation.js";
+import { ActionValues, valuesOf } from "./action-values.js";
+import { ExplainedStep, Reasons } from "./explanation.js";
 import { WhyLost } from "./loss.js";
 import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
 
@@ -24,14 +24,16 @@ export function Why() {
   useEffect(() => () => (moveTold.value = null), []);
   if (!at) return html`<p class="dim">Once a run is on the stage, each of its steps is explained here.</p>`;
   const { error, again } = explanation.value;
+  const hasGrid = isFollowing.value && isAtLeast("study") && valuesOf(at.lane) !== null;
   return html`
     <section class="why-tab" aria-label="Explanation" aria-busy=${step && step.step !== at.step ? "true" : "false"}>
       <${Navigator} at=${at} />
       <${WhyLost} />
       <${Trouble} error=${error} again=${again} />
       ${at.step === 0 && html`<p class="dim">It stands on the start line. Its first step comes next.</p>`}
-      ${isFollowing.value && isAtLeast("study") && html`<${ActionValues} />`}
-      ${step && html`<${ExplainedStep} told=${step} isFull=${isAtLeast("study")} />`}
+      ${step && html`<${Reasons} told=${step} />`}
+      ${hasGrid && html`<${ActionValues} lane=${at.lane} />`}
+      ${step && html`<${ExplainedStep} told=${step} isFull=${isAtLeast("study")} isRanked=${!hasGrid} />`}
       ${!step && !error && at.step > 0 && html`<${Waiting} />`}
     </section>
   `;
@@ -48,18 +50,7 @@ function toldAbout(at) {
   return answer.run_id === at.run_id && (answer.lane ?? 0) === at.lane ? answer : null;
 }
 
-/** @param {Explanation} step */
+/** What it brought is told in the head, or on a phone above. @param {Explanation} step */
 const wordsOf = (step) => ({
-  title: sentence(moveInWords(step.action, step)), reason: reasonOf(step), color: agentOf(step.agent).color,
+  title: sentence(moveInWords(step.action, step)), reason: step.what, color: agentOf(step.agent).color,
 });
-
-/** What the step brought, and what the move is worth since. @param {Explanation} told */
-function reasonOf({ reward_m, update }) {
-  const went = `The step brought ${fineMillimetres(reward_m)}`;
-  const direct = update?.direct;
-  if (!direct) return `${went}.`;
-  const [before, after] = [direct.before, direct.after].map(fineMillimetres);
-  if (before === after) return `${went}: the value of the move stays ${after}.`;
-  const verb = direct.after > direct.before ? "rises" : "falls";
-  return `${went}: the value of the move ${verb} from ${before} to ${after}.`;
-}
