@@ -13,8 +13,8 @@ from app.settings import Settings
 from app.storage.database.opening import open_store
 from hexapods.domain.errors import InvalidInput
 from tests.api.calls import ADDRESS, Api, refused
+from tests.features.classroom.school import TOKEN, Class
 from tests.features.classroom.teachers import moments_of
-from tests.features.classroom.test_room_routes import TOKEN, Class
 
 FORM = {"gait": "tripod", "simulator": "kinematic"}
 LESSON: dict[str, Any] = {
