@@ -10,6 +10,7 @@ from sqlalchemy import (
     Connection,
     String,
     Update,
+    and_,
     case,
     cast,
     delete,
@@ -162,6 +163,9 @@ class RunStore:
         Raises:
             StorageFull: if there is too little disk space; nothing is left behind then.
         """
+        # A run that was deleted gives way to its import, which has its id.
+        ids = [run.id for run, _ in imported]
+        self._purge(and_(RUNS.c.id.in_(ids), RUNS.c.deleted_at.is_not(None)))
         stored: list[dict[str, StoredFile]] = [{} for _ in imported]
         was_submitted = False
         robots = [robot for _, content in imported for robot in content.robots]
@@ -416,11 +420,12 @@ class RunStore:
 
     def purge(self, deleted_before: datetime) -> int:
         """Delete the runs for good that `trash` has deleted before a time; return their number."""
+        return self._purge(RUNS.c.deleted_at < deleted_before)
 
+    def _purge(self, is_purged: ColumnElement[bool]) -> int:
         def work(connection: Connection) -> tuple[int, Sequence[str]]:
-            is_old = RUNS.c.deleted_at < deleted_before
-            names = self._artifacts.file_names(connection, is_old)
-            return connection.execute(delete(RUNS).where(is_old)).rowcount, names
+            names = self._artifacts.file_names(connection, is_purged)
+            return connection.execute(delete(RUNS).where(is_purged)).rowcount, names
 
         number, names = self.database.write(work)
         self.files.remove(*names)
