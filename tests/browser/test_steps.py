@@ -70,6 +70,59 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     expect(dashboard.scoreboard).to_be_visible()
 
 
+def test_a_value_reads_the_same_in_every_view(dashboard: Dashboard, shared_server: Serving) -> None:
+    """Of a learner over landings: its best move in the state that is shown."""
+    page = dashboard.page
+    with shared_server.api() as api:
+        practice = {**WALK, "steps": 120, "agent": "afterstate-q", "pace": 8}
+        run = finished(api, "trainings", practice)
+        # Near its end it takes what it holds for best.
+        hold(api, run, 37.5)
+    dashboard.open(shared_server.link(depth="study", tab="why"))
+    explained = explanation(page)
+    made = explained.locator(".values td.next")
+    expect(made).to_be_visible()
+    number = int(step_number(page).input_value())
+    answer = dashboard.get(f"/api/v1/runs/{run['id']}/explain?step={number}")
+    pair, cell = answer["action"]
+    value_m = answer["choice"]["scores"][pair][cell]
+    text = f"{1000 * value_m:.1f}".replace("-", "−")
+    said, colours = dict[str, str](), dict[str, str]()
+
+    def shown(view: str, where: Locator, coloured: Locator | None = None) -> None:
+        said[view] = where.inner_text().replace("\u00a0", " ")
+        if coloured is not None:
+            colours[view] = coloured.evaluate("cell => getComputedStyle(cell).backgroundColor")
+
+    shown("values in this state", made, made)
+    legend = page.locator(".legend")
+    expect(legend).to_contain_text(re.compile(r"−?\d+\.\d[\s\S]*\d+\.\d\smm"))
+    if answer["choice"]["kind"] == "exploited":
+        shown("sentence", explained.get_by_text(answer["why"], exact=True))
+    panel = dashboard.open_tab("Table")
+    shown("table", panel.get_by_test_id("heat-read").locator("b"))
+    landed = panel.locator(".is-landed")
+    shown("landings", landed, landed.locator(".landing-value"))
+    key = panel.locator(".heat .values-key")
+    low, high = re.findall(r"−?\d+\.\d", key.inner_text())[:2]
+    assert [low, high] == re.findall(r"−?\d+\.\d", legend.inner_text())[:2]
+    # Where the stage is not followed the moves are ranked.
+    dashboard.open_tab("Why")
+    dashboard.button("One step back").click()
+    dashboard.button("One step forward").click()
+    expect(step_number(page)).to_have_value(str(number))
+    expect(dashboard.reason).to_have_text(answer["what"])
+    ranked = explained.get_by_role("row").filter(has_text=", made")
+    shown("ranking", ranked, ranked.locator(".score-bar i"))
+
+    assert all(
+        re.search(rf"(?<![\d.]){re.escape(text)}(?!\d)", words) for words in said.values()
+    ), said
+    # The picture's values come to a hundredth of a millimetre, which is one of 256 shades at most.
+    shades = [[int(part) for part in re.findall(r"\d+", colour)] for colour in colours.values()]
+    assert all(max(channel) - min(channel) <= 1 for channel in zip(*shades, strict=True)), colours
+
+
 def reads_the_whole_table(dashboard: Dashboard, run_id: str) -> None:
     """The table by keys and by pointer; without either it is at the move that was made."""
     answer = dashboard.get(f"/api/v1/runs/{run_id}/explain?step=120")
