@@ -30,7 +30,7 @@ from urllib.parse import urljoin, urlsplit
 
 import httpx2
 
-_LESSON, _CARD = "one-run-proves-nothing", 1
+_LESSON, _CARD = "one-run-proves-nothing", 2
 _FILE = re.compile(r'(?:href|src)="([^"]+\.(?:js|css|svg))"')
 _AT_ONCE = 6
 """Connections of a browser to a server."""

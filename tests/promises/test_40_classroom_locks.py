@@ -28,7 +28,7 @@ READS = {"GET", "HEAD"}
 CARDS = [
     (lesson_id, number, card)
     for lesson_id, lesson in built_in().items()
-    for number, card in enumerate(lesson.cards)
+    for number, card in enumerate(lesson.deck)
 ]
 DIFFERENT = list({(card[2].ask is None, card[2].go): card for card in CARDS}.values())
 """One card of each kind."""
@@ -115,7 +115,7 @@ def room_of(server: Serving, lesson: Any) -> Desk:
     code = desk.teach("POST", "/api/v1/rooms", {"lesson": lesson})["code"]
     desk = desk._replace(code=code)
     other = desk.join()
-    cards = built_in()[lesson].cards
+    cards = built_in()[lesson].deck
     runs = [n for n, card in enumerate(cards) if card.go in ("training", "race")]
     desk.teach("PUT", f"/api/v1/rooms/{code}/card", {"card": runs[0]})
     answer = desk.call("POST", f"/api/v1/rooms/{code}/runs", other, body={})
@@ -162,7 +162,9 @@ def test_policies_open_to_participants_what_is_listed_here() -> None:
             or access.spectators == "always"
         )
     }
-    assert opened == ALWAYS | {("POST", path) for path in NEEDS}
+    # Of runs of their own alone: those of others are hidden.
+    watched = ("PUT", f"{ROOM}/runs/{{run_id}}/watched")
+    assert opened == ALWAYS | {watched} | {("POST", path) for path in NEEDS}
 
 
 def test_a_participant_may_do_what_the_card_allows_and_nothing_else(
@@ -318,7 +320,7 @@ def test_a_tournament_is_for_its_room_alone(desks: dict[str, Desk]) -> None:
 def test_after_the_reveal_others_are_seen(server: Serving) -> None:
     lesson = next(iter(built_in()))
     desk = room_of(server, lesson)
-    number = next(n for n, card in enumerate(built_in()[lesson].cards) if card.go == "training")
+    number = next(n for n, card in enumerate(built_in()[lesson].deck) if card.go == "training")
     path = f"/r/{desk.code}/api/v1/trainings/{desk.other_run}"
     assert desk.status("GET", path, desk.cookie) == 403
     desk.teach("POST", f"/api/v1/rooms/{desk.code}/reveal", {"card": number})

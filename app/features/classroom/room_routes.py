@@ -74,10 +74,12 @@ from app.features.classroom.rooms import Rooms
 from app.features.classroom.teaching import Teaching
 from app.features.classroom.what_ifs import WhatIfs
 from app.storage.errors import Conflict, Forbidden, NotFound
+from app.storage.run import Run
 from app.storage.stored_races import RACE
 from app.viewer.shared_stage import SharedStage
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.text import MAX_NAME, check_name
+from hexapods.runs.race_config import RaceConfig
 from hexapods.shows.race_show import SPEED
 from hexapods.shows.show import MAX_SPEED
 
@@ -294,39 +296,49 @@ def reveal_card(
 
     The best, the median and the last robot of the card that is shown race together on the stage.
     """
-    number = None if body is None else body.card
-    card = services.of(Rooms).get(code).card if number is None else number
-    room = services.of(Rooms).reveal(code, card)
+    rooms = services.of(Rooms)
+    room = rooms.get(code)
+    card = room.card if body is None or body.card is None else body.card
+    room.check_card(card)
+    room.check_open()
+    room.revealed_with(card)
+    # The race is there before anything is revealed, so that no figure is told before it.
+    race = _race_of_class(services, room, card)
+    room = rooms.reveal(code, card, spotlight=None if race is None else race.id)
     services.of(Teaching).race(room)
-    _race_together(services, room, card)
+    shared = services.of(RoomStages).of(room.code)
+    if race is not None and shared is not None:
+        assert isinstance(race.config, RaceConfig)  # noqa: S101 - by `ClassRace`
+        speed = race.config.steps * race.config.robot.step_s / _CLASS_RACE_S
+        speed = min(max(speed, SPEED), MAX_SPEED)
+        shared.stage.set(run_id=race.id, playing=True, speed=speed)
     return RecordResponse(room_view(request, services, room, None))
 
 
-def _race_together(services: Services, room: Room, card: int) -> None:
-    """Let the best, the median and the last robot of the card that is shown race on the stage."""
+def _race_of_class(services: Services, room: Room, card: int) -> Run | None:
+    """Store the race of the best, the median and the last robot of the card that is shown.
+
+    Returns:
+        the race; None if the card has one, or is not shown, or no robot can race.
+    """
     if card != room.card or class_race_of(room, card) is not None:
-        return
+        return None
     race = class_race(services.store, services.recordings, finishers_of(room, services.store, card))
     if race is None:
-        return
+        return None
     run = race.run(services.jobs.new_id(), f"The class · {room.shown.title or room.lesson.title}")
 
     def store_run() -> None:
         services.jobs.keep(run, {RACE: race.file()})
 
     try:
-        if not services.of(Rooms).race_together(
+        is_stored = services.of(Rooms).race_together(
             room.code, card, race, run=run, store_run=store_run
-        ):
-            return
+        )
     except HexapodError as error:  # the disk is full: all else is revealed
         _logger.warning("no race of the class in the room %s: %s", room.code, error)
-        return
-    shared = services.of(RoomStages).of(room.code)
-    if shared is not None:
-        speed = race.config.steps * race.config.robot.step_s / _CLASS_RACE_S
-        speed = min(max(speed, SPEED), MAX_SPEED)
-        shared.stage.set(run_id=run.id, playing=True, speed=speed)
+        return None
+    return run if is_stored else None
 
 
 @router.post("/{code}/end", summary="End a room")

@@ -241,8 +241,15 @@ class Rooms:
         """Forbid answers and starts in a room, or permit them again; errors as `show_card`."""
         return self._change(code, is_frozen=is_frozen)
 
-    def reveal(self, code: str, number: int) -> Room:
-        """Reveal the answers and runs of a card to all participants; errors as `show_card`."""
+    def reveal(self, code: str, number: int, *, spotlight: str | None = None) -> Room:
+        """Reveal the answers and runs of a card to all participants; errors as `show_card`.
+
+        Args:
+            code: code of the room.
+            number: number of the card.
+            spotlight: id of the class's race, which is in the light from this moment on; None to
+                leave the light as it is.
+        """
         with self._lock:
             room = self.get(code)
             room.check_card(number)
@@ -252,12 +259,14 @@ class Rooms:
                 seed for seed, participant in room.participants.items() if participant.is_approved
             }
             runs = [r for r in room.runs.values() if r.card == number and r.seed in approved]
+            lit = room.spotlight if spotlight is None else spotlight
             self._rows.change_room(
                 room.code,
-                {"revealed": sorted(room.revealed | numbers)},
+                {"revealed": sorted(room.revealed | numbers), "spotlight": lit},
                 [run.run_id for run in runs],
             )
             room.revealed |= numbers
+            room.spotlight = lit
             self._runs.note_shown(room, runs)
         self._changed(room)
         return room
@@ -311,7 +320,7 @@ class Rooms:
     def race_together(
         self, code: str, card: int, race: ClassRace, *, run: Run, store_run: Callable[[], object]
     ) -> bool:
-        """Store the race of a revealed card's best, median and last robot, and spotlight it.
+        """Store the race of the best, the median and the last robot of the card that is shown.
 
         Args:
             code: code of the room.
@@ -333,7 +342,6 @@ class Rooms:
             if class_race_of(room, card) is not None or room.card != card:
                 return False
             self._runs.keep_class_race(room, race, card, run=run, store_run=store_run)
-            self.spotlight(code, run.id)
         return True
 
     def note_watched(self, code: str, seed: int, run_id: str) -> None:

@@ -593,8 +593,8 @@ def test_changes_of_a_room_are_events_of_its_stage(school: Class) -> None:
 def test_answers_match_their_models(school: Class) -> None:
     code = school.room("one-run-proves-nothing")
     pupil = school.joined(code)
-    school.show(code, 1)
-    pupil.call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 0.5})
+    school.show(code, 2)
+    pupil.call("POST", f"/rooms/{code}/predictions", json={"card": 2, "value": 0.5})
     school.finished(started(pupil.call("POST", f"/rooms/{code}/runs")))
     for api in (school.teacher, pupil, school.pupil()):
         TypeAdapter(RoomView).validate_python(api.get(f"/rooms/{code}"))

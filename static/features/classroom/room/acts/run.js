@@ -19,7 +19,7 @@ function Walker({ classroom, results, isOnItsWay, clock }) {
   const distance_m = isOnItsWay ? null : entry?.run?.distance_m ?? null;
   return html`
     <p class="run-caption">
-      <b>${entry?.name ?? UNKNOWN}</b>${clock && html`<span class="dim">${clock}</span>`}
+      <b>${entry ? entry.name ?? UNKNOWN : "\u00a0"}</b>${clock && html`<span class="dim">${clock}</span>`}
       ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
     </p>
   `;
