@@ -123,7 +123,10 @@ function Profiles({ pair, summary }) {
   const chart = useMemo(() => profileChart(pair, both, summary), [summary, pair[0].key, pair[1].key]);
   return html`
     <figure class="profiles">
-      <figcaption><b>Performance profiles</b><span class="dim">Band: 95 % interval of the share</span></figcaption>
+      <figcaption>
+        <b>Performance profiles</b>
+        ${chart.lines.some(({ low }) => low) && html`<span class="dim">Band: 95 % interval of the share</span>`}
+      </figcaption>
       <p class="strip-key">
         ${chart.lines.map(({ name, color, dash = [] }) => html`
           <span style=${{ "--agent": color }}>
