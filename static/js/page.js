@@ -49,12 +49,12 @@ function mediaSignal(query) {
 }
 
 /** Whether the panel is below the stage, and its tabs at the thumb. As in style/workspace.css. */
-export const isPhone = mediaSignal("(max-width: 760px)");
+export const isPhone = mediaSignal("(max-width: 47.5rem)");
 /** On a phone: whether the card is folded into its button, and what the foot of the panel holds is shown. */
 export const isCardFolded = signal(false);
 export const isFootOpen = signal(false);
 /** Whether there is room for a second panel beside the first. */
-export const isWide = mediaSignal("(min-width: 1700px)");
+export const isWide = mediaSignal("(min-width: 106.25rem)");
 
 // ---- the colour theme: light, dark, or the system's; the stage follows it
 
