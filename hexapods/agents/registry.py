@@ -206,10 +206,16 @@ def check_problem(name: str, problem: Problem, settings: Mapping[str, Any]) -> N
 def check_unattended(name: str, settings: Mapping[str, Any]) -> None:
     """Check by the agent's `check_unattended`, if it has one, that it learns by itself.
 
+    An agent that cannot be imported here is not checked: it may be where the trial runs.
+
     Raises:
-        UnknownName, InvalidInput: as `find`, or if it needs people who teach it.
+        InvalidInput: if it needs people who teach it.
     """
-    check = getattr(find(name), "check_unattended", None)
+    try:
+        agent = find(name)
+    except InvalidInput:
+        return
+    check = getattr(agent, "check_unattended", None)
     if check is not None:
         check(**settings)
 

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal, NamedTuple
 
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.text import counted
 from hexapods.experiments.config import MAX_SEEDS
 from hexapods.experiments.formatting import number, percent, shares
@@ -84,6 +85,8 @@ class Comparison:
         unit: of the points.
         is_at_time_out: whether they are distances at time-out, rather than after 50 steps.
     """
+
+    __repr__ = short_repr
 
     a: Compared
     b: Compared

@@ -144,7 +144,7 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
 def imported_later(script: Path, folder: Path) -> list[str]:
     """Return the modules that a script imports when they are first needed."""
     # In comments stand types of modules.
-    imports = re.findall(r'import\("(\.[^"]+)"\)(?:\)?\s*\.then\(|[;,])', script.read_text("utf-8"))
+    imports = re.findall(r'import\("(\.[^"]+)"\)+\s*(?:\.then\(|[;,])', script.read_text("utf-8"))
     modules = [(script.parent / path).resolve() for path in imports]
     return [module.relative_to(folder.resolve().parent).as_posix() for module in modules]
 

@@ -191,7 +191,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--observation", "guessed"), '"measured", "commanded", "planned"'),
         (
             (*GAIT, "--agent", "skynet"),
-            "linear-model, greedy, two-step, look-ahead, ",
+            "linear-model, tamer, greedy, two-step, look-ahead, ",
         ),
         ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
         ((*GAIT, "--from", "missing.npz"), "missing.npz"),

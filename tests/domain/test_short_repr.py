@@ -64,7 +64,14 @@ def test_no_repr_is_longer_than_a_few_lines(
     examples: Mapping[str, object], experiment: hx.Experiment
 ) -> None:
     trial = next(iter(experiment.trials.values()))
-    shown = {**examples, "experiment": experiment, "its config": experiment.config, "trial": trial}
+    shown = {
+        **examples,
+        "experiment": experiment,
+        "its config": experiment.config,
+        "trial": trial,
+        "its figure": experiment.figure(),
+        "comparison": hx.compare([0.1, 0.2, 0.3], [0.2, 0.3, 0.4]),
+    }
     assert {
         name: len(repr(value)) for name, value in shown.items() if len(repr(value)) > MAX_REPR
     } == {}

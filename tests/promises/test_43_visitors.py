@@ -46,10 +46,11 @@ OF_OWN = {
     ("DELETE", "/api/v1/trainings/{run_id}"),
     ("DELETE", "/api/v1/races/{run_id}"),
     ("DELETE", "/api/v1/runs"),
+    ("POST", "/api/v1/runs/{run_id}/restore"),
 }
 QUESTIONS = {("POST", "/api/v1/what-if"), ("POST", "/api/v1/robots/preview")}
 BY_CODE = {("POST", "/api/v1/rooms/{code}/participants")}
-OPERATORS_READ = {"/api/v1/visitors"}
+OPERATORS_READ = {"/api/v1/visitors", "/l/{lesson_id}/sheet"}
 """Of what is read, all that is not public."""
 
 

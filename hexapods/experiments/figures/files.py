@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.text import text_cell
 from hexapods.experiments.figures.caption import caption_of
 from hexapods.experiments.figures.config import FigureConfig
@@ -42,6 +43,8 @@ class PaperFigure:
             and a difference, or performance profiles.
         command: lines of a shell that repeat it.
     """
+
+    __repr__ = short_repr
 
     pictures: Mapping[str, bytes]
     caption: str

@@ -112,7 +112,7 @@ def test_presses_that_nobody_can_have_meant_are_refused(school: Class) -> None:
     school.teacher.until({"kind": "training", "id": run_id}, lambda now: now["state"] == "running")
 
     other.call("DELETE", f"/rooms/{code}/me")
-    refused(pressed(other, code, run_id, 0.5), 403)
+    refused(pressed(other, code, run_id, 0.5), 401)
     school.show(code, 1)
     refused(pressed(pupil, code, run_id, 0.5), 403, "ard 1 teaches nothing")
     refused(pupil.call("GET", f"/rooms/{code}/teaching"), 404, "ard 1 teaches nothing")

@@ -149,7 +149,7 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
         (("experiment", "table1", "--agent", "greedy"), "--agent is for figure4, league"),
         (
             ("experiment", "figure4", "--agent", "skynet"),
-            "linear-model, greedy, two-step",
+            "linear-model, tamer, greedy, two-step",
         ),
         (("experiment", "table1", "--workers", "0"), "workers must be from 1 to 512"),
         (
