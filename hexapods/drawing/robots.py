@@ -164,15 +164,15 @@ def label_text(
         is_ranked: whether it is the photo finish, which tells places in place of activities.
     """
     crossing = [] if lane.crossed_s is None else [f"crossed at {lane.crossed_s:.1f}\u00a0s"]
+    of_ghost = [] if ghost is None else [f"{ghost_name} {metres(ghost.distance_m)}"]
     if is_ranked:
-        return "\n".join([f"{lane.rank}. {lane_spec.name}", metres(lane.distance_m), *crossing])
+        ranked = [f"{lane.rank}. {lane_spec.name}", metres(lane.distance_m)]
+        return "\n".join([*ranked, *of_ghost, *crossing])
     if lane.failure is not None:
         return f"{lane_spec.name}\ncannot go on"
     if lane.step == 0:
         return lane_spec.name
-    lines = [lane_spec.name, f"{metres(lane.distance_m)}, {_progress(lane)}"]
-    if ghost is not None:
-        lines.append(f"{ghost_name} {metres(ghost.distance_m)}")
+    lines = [lane_spec.name, f"{metres(lane.distance_m)}, {_progress(lane)}", *of_ghost]
     if crossing:
         lines += crossing
     elif lane.thinking:

@@ -12,7 +12,7 @@
   const GAP_PX = 4;
   const STEM_FROM_PX = 8;
   /** By how much of its width a label gives way to the side, what that costs of its distance, and to be below. */
-  const SHIFTS = [0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9];
+  const SHIFTS = [0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.1, 1.1];
   const [SIDEWAYS, BELOW_PX] = [0.8, 40];
 
   /** Name of the scene node → {element, anchor, size}; the size is unknown until it is measured. */

@@ -21,7 +21,11 @@ from tests.promises.raw import UPGRADE, Route, accesses, every_route, request_li
 TOKEN = "a-token-for-tests"
 READS = {"GET", "HEAD"}
 WHAT_IF, PREVIEW = "/api/v1/what-if", "/api/v1/robots/preview"
-FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
+FOR_ANYONE = {
+    *("/", "/runs", "/compare", "/experiments", "/lessons"),
+    *("/healthz", "/readyz", "/static/favicon.svg"),
+}
+OPERATORS_READ = {"/l/{lesson_id}/sheet"}
 """Accessible without the token: the page, which asks for it, and the health checks."""
 BY_CODE = {
     ("GET", "/api/v1/rooms/{code}"),
@@ -44,6 +48,8 @@ VALID_BODIES: dict[str, Any] = {
 
 def role_of(route: Route) -> str:
     """Return the role that a route must require."""
+    if route.path in OPERATORS_READ:
+        return "operator"
     if route.method not in READS and route.path not in (WHAT_IF, PREVIEW):
         return "operator"
     return "anyone" if route.path in FOR_ANYONE else "spectator"

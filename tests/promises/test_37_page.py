@@ -107,7 +107,7 @@ class Visit:
         port = self._server.port
         self._server.kill()
         self._server = Serving(self._data, port)
-        expect(self._dashboard.connection).to_contain_text("live")
+        expect(self._dashboard.connection).to_contain_text("connected")
 
     def settle(self) -> None:
         """Stop what is computed, except for what is on stage, and hold the picture."""

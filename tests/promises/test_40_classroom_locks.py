@@ -34,7 +34,7 @@ DIFFERENT = list({(card[2].ask is None, card[2].go): card for card in CARDS}.val
 """One card of each kind."""
 TRIED = at_length(DIFFERENT, CARDS)
 ROOM = "/api/v1/rooms/{code}"
-NEEDS = {f"{ROOM}/predictions": "ask", f"{ROOM}/runs": "go"}
+NEEDS = {f"{ROOM}/predictions": "ask", f"{ROOM}/runs": "go", f"{ROOM}/presses": "teach"}
 """By path that is sent to, the field of a card that opens it."""
 ENTRIES = "/api/v1/tournaments/{tournament_id}/entries"
 ALWAYS = {("POST", f"{ROOM}/participants"), ("DELETE", f"{ROOM}/me"), ("POST", ENTRIES)}

@@ -16,7 +16,7 @@ def compared_pairs(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
     walked = [entry for entry in summary["settings"] if entry["total"] is not None]
     pairs = list(combinations(walked, 2))
     if len(pairs) > MAX_PAIRS:
-        pairs.sort(key=lambda pair: not _have_same_conditions(*pair))
+        pairs.sort(key=lambda pair: (not _have_same_conditions(*pair), not _are_learners(*pair)))
     return [
         {
             "keys": [a["key"], b["key"]],
@@ -24,6 +24,10 @@ def compared_pairs(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
         }
         for a, b in pairs[:MAX_PAIRS]
     ]
+
+
+def _are_learners(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
+    return a["role"] == b["role"] == "learner"
 
 
 def _have_same_conditions(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:

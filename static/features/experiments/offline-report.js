@@ -5,6 +5,7 @@ import { html } from "../../js/components/elements.js";
 import { options } from "../../js/settings.js";
 import { Findings } from "./components/all-findings.js";
 import { followPrinting } from "./printing.js";
+import { comparable, firstPair } from "./profiles.js";
 import { configInWords, findingIn } from "./words.js";
 
 /** @import { Run, Summary } from "../../js/types.js" */
@@ -26,6 +27,13 @@ function storedComparison(a, b) {
     : Promise.reject(new Error(`This file has no comparison of these two; the command line makes it: ${command}`));
 }
 
+/** The first pair, or the first one whose comparison the file has. @param {Summary} summary */
+function firstStoredPair(summary) {
+  const [a, b] = firstPair(comparable(summary));
+  const isStored = comparisons.pairs.some(({ keys }) => keys.includes(a) && keys.includes(b));
+  return isStored ? [a, b] : comparisons.pairs[0]?.keys ?? null;
+}
+
 const FILES = "summary.json has all numbers of this page, trials.csv every trial.";
 
 /** @param {{ summary: Summary, report: Report }} props */
@@ -40,7 +48,7 @@ const OfflineReport = ({ summary, report }) => html`
         ${findingIn(summary) && html`<p class="finding">${findingIn(summary)}</p>`}
         <p class="dim">${configInWords(/** @type {Run["config"]} */ (/** @type {unknown} */ (summary.config)))}</p>
       </div>
-      <${Findings} summary=${summary} compare=${storedComparison}
+      <${Findings} summary=${summary} compare=${storedComparison} firstPair=${firstStoredPair(summary)}
         more=${[["Command", html`<code>${report.command}</code>`], ["Files", FILES]]} />
     </div>
   </main>

@@ -17,15 +17,17 @@ import { TwoSettings } from "./two-settings.js";
  * `children` follow the figure; `more` are further rows of the method.
  * @param {{
  *   summary: Summary, onSeed?: OnSeed | null, more?: [string, ComponentChildren][], children?: ComponentChildren,
- *   compare: Compare, saveFigure?: SaveFigure | null
+ *   compare: Compare, firstPair?: string[] | null, saveFigure?: SaveFigure | null
  * }} props
  */
-export function Findings({ summary, onSeed = null, more = [], children, compare, saveFigure = null }) {
+export function Findings({
+  summary, onSeed = null, more = [], children, compare, firstPair = null, saveFigure = null,
+}) {
   return html`
     <${LeftOut} trials=${summary.trials} />
     <${ResultPanels} summary=${summary} onSeed=${onSeed} />
     ${children}
-    <${TwoSettings} summary=${summary} compare=${compare} saveFigure=${saveFigure} />
+    <${TwoSettings} summary=${summary} compare=${compare} first=${firstPair} saveFigure=${saveFigure} />
     ${!summary.worlds?.length && html`<${AtAGlance} summary=${summary} />`}
     <${Versus} summary=${summary} />
     <${Claims} claims=${summary.claims ?? []} isComplete=${summary.trials.done >= summary.trials.total} />

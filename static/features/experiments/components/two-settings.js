@@ -21,14 +21,15 @@ import { namesOf } from "../seeds.js";
  */
 
 /**
- * `saveFigure`: null where there is no server.
- * @param {{ summary: Summary, compare: Compare, saveFigure?: SaveFigure | null }} props
+ * `first`: the keys of the two that are compared at first. `saveFigure`: null where there is no server.
+ * @param {{ summary: Summary, compare: Compare, first?: string[] | null, saveFigure?: SaveFigure | null }} props
  */
-export function TwoSettings({ summary, compare, saveFigure = null }) {
+export function TwoSettings({ summary, compare, first = null, saveFigure = null }) {
   const settings = useMemo(() => comparable(summary), [summary]);
   const [chosen, setChosen] = useState(/** @type {[string, string] | null} */ (null));
   if (settings.length < 2) return null;
-  const [a, b] = chosen?.every((key) => settings.some((one) => one.key === key)) ? chosen : firstPair(settings);
+  const isThere = (/** @type {string} */ key) => settings.some((setting) => setting.key === key);
+  const [a, b] = chosen?.every(isThere) ? chosen : first ?? firstPair(settings);
   const names = namesOf(settings, summary.parameters);
   const pair = /** @type {[Setting, Setting]} */ ([a, b].map((key) => settings.find((one) => one.key === key)));
   return html`

@@ -23,7 +23,7 @@ def test_the_page_cannot_be_presented(dashboard: Dashboard, tmp_path: Path) -> N
         expect(page.get_by_role("menuitem", name="Keys and help")).to_be_visible()
         expect(page.get_by_role("menuitem", name="Present")).to_have_count(0)
         expect(page.get_by_role("menuitem", name="Remote")).to_have_count(0)
-        page.get_by_role("button", name="Keys and help").click()
+        page.get_by_role("menuitem", name="Keys and help").click()
         help_text = page.get_by_role("dialog", name="Keys")
         expect(help_text).to_contain_text("show more: Watch, Try, Study")
         expect(help_text).not_to_contain_text("present")
