@@ -271,7 +271,7 @@ def show_card(
 ) -> RecordResponse[RoomView]:
     """Show a card to all; participants can change the settings that it opens, and no others."""
     if services.of(Rooms).get(code).card != body.card:
-        services.of(Teaching).stop(code)
+        services.of(Teaching).stop(code, is_announced=False)
     room = services.of(Rooms).show_card(code, body.card)
     return RecordResponse(room_view(request, services, room, None))
 

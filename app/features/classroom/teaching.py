@@ -145,8 +145,13 @@ class Teaching:
             self._follow(room, cast(Run, run))
         return room
 
-    def stop(self, code: str) -> Room:
+    def stop(self, code: str, *, is_announced: bool = True) -> Room:
         """End the teaching of the card that is shown, if there is one; what was learned stays.
+
+        Args:
+            code: code of the room.
+            is_announced: whether pages are told; not where another card is shown at once, since
+                they would ask for the teaching of a card that has gone by.
 
         Raises:
             NotFound: if there is no such room.
@@ -157,7 +162,7 @@ class Teaching:
             if run is not None and run.state in NOT_ENDED:
                 with suppress(Conflict, NotFound):  # it has ended meanwhile
                     self._core.jobs.stop(run.id)
-        if room.shown.teach is not None:
+        if is_announced and room.shown.teach is not None:
             self._publish(room, [])
         return room
 
