@@ -17,6 +17,7 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ from starlette.testclient import TestClient
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.server import create_app
 from app.settings import Settings
-from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE, open_store
 from app.storage.errors import StorageFailed
 from app.storage.run import LIVE, NOT_ENDED, PAUSED, RESUMABLE, RUNNING, STATES
 from tests.api.calls import ADDRESS
@@ -216,10 +217,13 @@ def test_random_verbs_never_block_the_queue(launch: Callable[..., Served], tmp_p
     assert server.client.delete(f"/api/v1/trainings/{last['id']}").status_code == 204
     assert server.client.get("/readyz").status_code == 200
     assert server.jobs() == []
-    assert rows_and_files(tmp_path) == (0, 0)
     began = time.monotonic()
     assert server.end(signal.SIGTERM) == 0
     assert time.monotonic() - began < at_length(LONG_S, 10.0)
+    # As the server does it an hour after a deletion.
+    with open_store(Settings(data=tmp_path)) as store:
+        assert store.purge(datetime.now(UTC)) > 0
+    assert rows_and_files(tmp_path) == (0, 0)
 
 
 def test_deleting_a_run_as_it_stops_does_not_block_the_queue(launch: Callable[..., Served]) -> None:
