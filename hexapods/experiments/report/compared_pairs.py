@@ -27,7 +27,7 @@ def compared_pairs(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _are_learners(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
-    return a["role"] == b["role"] == "learner"
+    return bool(a["role"] == b["role"] == "learner")
 
 
 def _have_same_conditions(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
