@@ -180,8 +180,10 @@ def was_taught(api: httpx2.Client, code: str, run_id: str, pupils: RestPupils) -
     assert pupils.praised > 0
     assert pupils.counted > PUPILS * (pupils.praised + pupils.rebuked) / 2
     assert max(press["plus"] for press in teaching["presses"]) >= 26
+    # A tenth of the pupils is of another opinion.
+    assert max(press["minus"] for press in teaching["presses"]) >= 2
     recorded = [press for change in training["changes"] for press in change["presses"]]
     assert len(recorded) == len(teaching["presses"])
     assert any(entry["value"] > 0 for entry in values)
     assert [entry["value"] for entry in values] != [entry["value"] for entry in untaught]
-    assert training["result"]["distance_m"] > 0.05
+    assert training["result"]["distance_m"] > 0.15
