@@ -37,6 +37,13 @@ PROBE_BUSY_S = 2.0
 _TOUCH = text("UPDATE about SET owner = owner")
 T = TypeVar("T")
 _READ_ONLY = "hexapods_only_reads"
+_PRAGMAS = (
+    "journal_mode=WAL",
+    "synchronous=FULL",
+    "foreign_keys=ON",
+    # What is deleted is overwritten, for it can be of a pupil.
+    "secure_delete=ON",
+)
 _PRIMARY_CODE = 0xFF  # mask: an extended result code of SQLite has the primary one in its low byte
 
 
@@ -277,7 +284,7 @@ def decode_leniently(connection: sqlite3.Connection) -> None:
 def _prepare_sqlite(connection: sqlite3.Connection, record: object) -> None:
     del record
     decode_leniently(connection)
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+    for pragma in _PRAGMAS:
         connection.execute(f"PRAGMA {pragma}")
 
 

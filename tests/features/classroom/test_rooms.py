@@ -1,5 +1,6 @@
 """Rooms: what is kept over a restart, also by PostgreSQL, and when an idle one is ended."""
 
+import struct
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -255,3 +256,23 @@ def test_who_joins_and_leaves_all_day_uses_up_nothing(store: RunStore) -> None:
     assert RoomRows(store.database).participants() == []
     assert rooms.get(code).participants == {}
     assert seed == 4
+
+
+def test_nothing_of_a_deleted_room_is_left_in_the_file(tmp_path: Path) -> None:
+    with opened(tmp_path, None) as store:
+        rooms = Rooms(store)
+        code = rooms.create(LESSON).code
+        name = rooms.join(code).participant.name
+        rooms.predict(code, 0, 0, 0.123456789)
+        # A number alone is stored as eight bytes.
+        traces = [code.encode(), name.encode(), struct.pack(">d", 0.123456789)]
+        before = _bytes_below(tmp_path)
+        rooms.end(code)
+        rooms.delete(code)
+    after = _bytes_below(tmp_path)
+    assert [trace in before for trace in traces] == [True, True, True]
+    assert [trace in after for trace in traces] == [False, False, False]
+
+
+def _bytes_below(folder: Path) -> bytes:
+    return b"".join(file.read_bytes() for file in sorted(folder.rglob("*")) if file.is_file())
