@@ -16,7 +16,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from app.features.classroom.names import ALPHABET, CODE_LENGTH
-from app.features.classroom.rooms import MAX_OPEN
+from app.features.classroom.room_registry import MAX_OPEN
 from app.features.classroom.seats import MAX_PARTICIPANTS
 from app.server import create_app
 from app.settings import Settings

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, Literal
 
-from fastapi import Depends
+from fastapi import Depends, Path
 from starlette.requests import Request
 from starlette.types import ASGIApp, Scope
 
@@ -223,6 +223,9 @@ def _reader(request: Request) -> tuple[Seat, ...] | None:
 
 ReaderDep = Annotated[tuple[Seat, ...] | None, Depends(_reader)]
 """Which participants of rooms the client is, whose runs it sees; None for operators."""
+
+
+CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
 
 
 def work_of_card(scope: Scope) -> Work:

@@ -15,7 +15,14 @@ from app.api.deps import EventListener, Services
 from app.api.identity import Identity
 from app.api.pages import page_content
 from app.feature import DeleteRuns, Feature
-from app.features.classroom import lesson, lesson_routes, pages, room_routes, teach_routes
+from app.features.classroom import (
+    lesson,
+    lesson_routes,
+    pages,
+    participant_routes,
+    room_routes,
+    teach_routes,
+)
 from app.features.classroom.access import Participant, RoomAccess
 from app.features.classroom.card_starts import CardStarts
 from app.features.classroom.lesson_rows import LessonRows
@@ -75,7 +82,12 @@ class Classroom(Feature):
     @classmethod
     def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:
         del agents
-        return lesson_routes.router, room_routes.router, teach_routes.router
+        return (
+            lesson_routes.router,
+            room_routes.router,
+            participant_routes.router,
+            teach_routes.router,
+        )
 
     def pages(self) -> Sequence[BaseRoute]:
         return pages.routes(page_content("features/classroom/room.html", self.core.page_files))

@@ -135,20 +135,7 @@ class RoomRuns:
         """Start a run of the whole class on the card that is shown; see `Rooms.start_of_class`."""
 
         def link(runs: Sequence[Run]) -> None:
-            links = [
-                RoomRun(
-                    run_id=run.id,
-                    room=room.code,
-                    seed=CLASS_SEED,
-                    card=room.card,
-                    given=given,
-                    is_main=False,
-                    is_shown=True,
-                    created_at=run.created_at,
-                )
-                for run in runs
-            ]
-            self._keep(room, links)
+            self._keep(room, [_link_of_class(run, room, given, CLASS_SEED) for run in runs])
 
         linked = LinkedStart(start, link)
         try:
@@ -158,20 +145,10 @@ class RoomRuns:
             raise
 
     def keep_class_race(
-        self, room: Room, race: ClassRace, card: int, *, run: Run, store_run: Callable[[], object]
+        self, room: Room, race: ClassRace, *, run: Run, store_run: Callable[[], object]
     ) -> None:
-        """Store the race of a card's best, median and last robot, which all may see."""
-        link = RoomRun(
-            run_id=run.id,
-            room=room.code,
-            seed=race.seeds[0],
-            card=card,
-            given=race.given,
-            is_main=False,
-            is_shown=True,
-            created_at=run.created_at,
-        )
-        self._keep(room, [link])
+        """Store the race of the best, the median and the last robot of the card that is shown."""
+        self._keep(room, [_link_of_class(run, room, race.given, race.seeds[0])])
         try:
             store_run()
         except BaseException:
@@ -262,6 +239,20 @@ class RoomRuns:
         except NotFound:
             return None
         return run if isinstance(run, Run) else None
+
+
+def _link_of_class(run: Run, room: Room, given: Mapping[str, Any], seed: int) -> RoomRun:
+    """Return the link of a run of the whole class on the card that is shown, which all may see."""
+    return RoomRun(
+        run_id=run.id,
+        room=room.code,
+        seed=seed,
+        card=room.card,
+        given=given,
+        is_main=False,
+        is_shown=True,
+        created_at=run.created_at,
+    )
 
 
 def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:

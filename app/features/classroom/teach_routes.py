@@ -11,8 +11,8 @@ from app.api.descriptions import VALID
 from app.api.fields import Body, number
 from app.api.policy import OPERATOR, api_router, policy
 from app.api.record_response import RecordResponse
-from app.features.classroom.access import WATCH_ROOM, ReaderDep, participant
-from app.features.classroom.room_routes import CodePath, SeatDep
+from app.features.classroom.access import WATCH_ROOM, CodePath, ReaderDep, participant
+from app.features.classroom.participant_routes import SeatDep
 from app.features.classroom.teaching import Teaching, TeachingView
 
 MAX_RUN_S = 1e6

@@ -10,8 +10,9 @@ from sqlalchemy import Connection, TextClause, text
 
 from app.api.answers import ComparisonView, SeedsView
 from app.features.classroom.lesson import read_lesson
+from app.features.classroom.room_registry import IDLE, MAX_OPEN
 from app.features.classroom.room_rows import RoomRows, RoomRun, Seat
-from app.features.classroom.rooms import IDLE, MAX_OPEN, Rooms
+from app.features.classroom.rooms import Rooms
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
 from tests.postgresql import PostgresServer
