@@ -2,6 +2,7 @@
 
 - `stage` chooses the run that is shown and executes playback commands; `state_machine` says what is
   on stage, and why.
+- `recorded_runs` chooses what it shows by itself, after a start and as a replay.
 - `planning` plans the playhead that pages follow; `stage_view` has the records that they get.
 - `playback` makes the show of a stored run, and keeps replays.
 - `roles` says who may operate a stage and who may watch it.

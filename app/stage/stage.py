@@ -4,19 +4,18 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from datetime import datetime, timedelta
 from types import MappingProxyType
 from typing import Any, Literal
 
 from app.events.bus import Channel, Event, Subscription
 from app.stage import planning
 from app.stage.playback import show_of, version_of
+from app.stage.recorded_runs import newest_race, run_of_last_work
 from app.stage.stage_view import Announcement, Picture, StageView, stage_view
 from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
-from app.storage.run_kind import WALKS
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import Record
 from hexapods.domain.world import UNDISTURBED, World
@@ -34,11 +33,8 @@ ANNOUNCE_AFTER_S, NEXT_AFTER_S = 10.0, 10.0
 _LONGEST_STALL_S = 2.0
 """Longest time by which playback advances at once: a machine that was suspended goes on there."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
-_RECENT_RUNS = 20
 _logger = logging.getLogger(__name__)
 _NO_MEMBERS: Mapping[str, Record] = MappingProxyType({})
-_SAME_END = timedelta(seconds=15)
-"""Time within which all runs end that the end of a server interrupts."""
 
 
 class Stage:
@@ -94,8 +90,8 @@ class Stage:
     def restore(self) -> None:
         """Show the end of the run that was last at work, after a start of the server.
 
-        Of those that the end of the server has interrupted one that is recorded, if any is. Where
-        it cannot be shown the stage is empty: its recording is damaged, or of another version.
+        Where it cannot be shown, the stage is empty: its recording is damaged, or of another
+        version.
         """
         with self._lock:
             try:
@@ -106,19 +102,7 @@ class Stage:
                 self._begin()
 
     def _restore(self) -> None:
-        store, is_public = self._store, self._store.is_public
-        newest = store.list(limit=_RECENT_RUNS, condition=is_public).runs
-        interrupted = store.list(state="interrupted", limit=_RECENT_RUNS, condition=is_public).runs
-        runs = {run.id: run for run in (*newest, *interrupted) if run.kind in WALKS}
-        by_end = sorted(runs.values(), key=_last_activity, reverse=True)
-        last = [
-            run
-            for run in by_end
-            if run.state == by_end[0].state == "interrupted"
-            and _last_activity(by_end[0]) - _last_activity(run) < _SAME_END
-        ]
-        recorded = next((run for run in last or by_end if self._is_recorded(run)), None)
-        run = recorded or next(iter(last), None)
+        run = run_of_last_work(self._store, self._recordings)
         if run is None:
             return
         try:
@@ -325,15 +309,6 @@ class Stage:
         left_s = self._waiting_since_s + NEXT_AFTER_S - self.now()
         return Announcement(run_id=self._state.announced, in_s=round(max(0.0, left_s), 1))
 
-    def _is_recorded(self, run: Run) -> bool:
-        try:
-            if run.kind == "race":
-                return any(lane.steps for lane in self._recordings.race(run.id) or ())
-            recording = self._recordings.training(run.id) if run.kind == "training" else None
-        except HexapodError:
-            return False  # its recording cannot be read
-        return recording is not None and len(recording.steps) > 0
-
     def _follow_picture(self) -> bool:
         """Report to the state machine whether the picture is at its end; return if it was not."""
         before = self._state
@@ -398,11 +373,7 @@ class Stage:
 
     def _announce(self) -> None:
         """Announce a replay of the newest finished race that is recorded, if there is one."""
-        store = self._store
-        finished = store.list(
-            kind="race", state="finished", limit=_RECENT_RUNS, condition=store.is_public
-        ).runs
-        run = next((run for run in finished if self._is_recorded(run)), None)
+        run = newest_race(self._store, self._recordings)
         if run is None:
             return
         # Its deletion ends the announcement.
@@ -504,7 +475,3 @@ class Stage:
 
 def _staged(run: Run) -> StagedRun:
     return StagedRun(run.id, run.state, run.started_at is not None)
-
-
-def _last_activity(run: Run) -> datetime:
-    return run.ended_at or run.created_at
