@@ -64,6 +64,35 @@ def test_a_teacher_removes_somebody_whose_phone_says_so(
         assert api.get(f"rooms/{code}").json()["predicted"] == 0
 
 
+@pytest.mark.test
+def test_a_pupil_leaves_and_can_come_back_as_somebody_else(
+    flat_browser: Browser, school: Serving
+) -> None:
+    with school.api(TOKEN) as api, phone(flat_browser) as pupil:
+        code = api.post("rooms", json={"lesson": LESSON}).raise_for_status().json()["code"]
+        pupil.enter(school, code)
+        pupil.press("Join")
+        name, seed = pupil.who
+        pupil.press("A")
+        pupil.press("Lock my prediction")
+        pupil.sees("Locked.")
+        pupil.press("Leave the room…")
+        dialog = pupil.page.get_by_role("dialog", name="Leave the room?")
+        expect(dialog).to_contain_text(name)
+        is_accessible(pupil)
+        pupil.press("No, stay")
+        expect(dialog).to_be_hidden()
+        pupil.press("Leave the room…")
+        pupil.press("Leave")
+        pupil.press("Join")
+        assert pupil.who[1] == seed + 1
+        expect(dialog).to_be_hidden()
+        assert [seat["is_present"] for seat in api.get(f"rooms/{code}").json()["people"]] == [
+            False,
+            True,
+        ]
+
+
 def test_where_phones_cannot_come_a_room_is_tried_on_this_computer(
     flat_browser: Browser, tmp_path: Path
 ) -> None:

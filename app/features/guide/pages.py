@@ -31,6 +31,7 @@ CONTENTS = (
             "spectators",
             "classroom",
             "tournaments",
+            "privacy",
             "exports",
         ),
     ),

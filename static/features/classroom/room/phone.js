@@ -1,17 +1,18 @@
 // The page of a participant: the card, the own prediction, the own robot, and after the reveal its place in the class.
+import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
-import { html } from "../../../js/components/elements.js";
+import { Dialog, html } from "../../../js/components/elements.js";
 import { Loaded, Slot, withStyle } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";
-import { Away, Door } from "./join.js";
+import { Away, Door, Failure } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { Answer, KINDS, scoreInWords } from "./questions.js";
 import {
-  arrived, CLOSER, closerLink, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, replayed, room,
-  shownResults,
+  arrived, busy, CLOSER, closerLink, goesOn, isRevealed, lastRunId, leave, ownAnswer, ownEntry, ownRun, ownWhatIf,
+  replayed, room, shownResults,
 } from "./room.js";
 
 /** @import { Ask, Classroom, LessonCard, ResultEntry } from "../../../js/types.js" */
@@ -76,7 +77,33 @@ function Present({ classroom }) {
     <${Closer} card=${shown} />
     ${classroom.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${classroom} />`}
     ${!shown.teach && html`<${Next} card=${shown} />`}
+    <${Leaving} />
     <${CardActions} card=${shown} number=${card} isOpen=${isOpen} />
+  `;
+}
+
+const leavingIsOpen = signal(false);
+
+/** The way out, which asks once more. */
+function Leaving() {
+  const { name = "" } = room.value?.me ?? {};
+  const go = async () => {
+    if (await leave()) leavingIsOpen.value = false;
+  };
+  return html`
+    <button class="quiet" onClick=${() => (leavingIsOpen.value = true)}>Leave the room…</button>
+    <${Dialog} isOpen=${leavingIsOpen} id="leaving" labelledBy="leaving-title">
+      <h2 id="leaving-title">Leave the room?</h2>
+      <p>
+        This phone forgets that you are ${name}. Your answers and robots stay with the class, under that name: your
+        teacher can delete them.
+      </p>
+      <${Failure} at="leave" />
+      <div class="row">
+        <button class="danger" disabled=${busy.value.leave} onClick=${go}>Leave</button>
+        <button class="quiet" autofocus onClick=${() => (leavingIsOpen.value = false)}>No, stay</button>
+      </div>
+    <//>
   `;
 }
 

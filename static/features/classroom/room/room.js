@@ -242,8 +242,10 @@ export const join = () => perform("join", async () => {
   await refresh();
 });
 
-export const leave = () => perform("join", async () => {
+/** Leave the room: this browser is nobody in it any more, and can join as somebody else. */
+export const leave = () => perform("leave", async () => {
   await api.leaveRoom(code);
+  storedText(`join:${room.peek()?.code}`, "").value = randomKey();
   await refresh();
   isRemoved.value = false;
 });
