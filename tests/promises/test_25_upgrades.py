@@ -1,4 +1,4 @@
-"""Promise 25: upgrades keep data, on SQLite and PostgreSQL; data of before 1.0 is refused."""
+"""Promise 25: upgrades keep data, on SQLite and PostgreSQL; data of before 0.3 is refused."""
 
 import hashlib
 import shutil
@@ -37,7 +37,7 @@ from tests.storage.stores import BACKENDS, TRIALS, database_url, opened, trainin
 pytestmark = pytest.mark.test
 
 VERSION_0_1 = Path(__file__).with_name("version_0_1.zip")
-"""A data folder, archives and a table of a version before 1.0."""
+"""A data folder, archives and a table of a version before 0.3."""
 CORE = Path(migration.__file__).with_name("migrations")
 
 on_both = pytest.mark.parametrize("backend", BACKENDS)
@@ -179,12 +179,12 @@ def digests(folder: Path) -> Mapping[Path, str]:
     }
 
 
-def test_data_of_a_version_before_1_0_is_refused_and_left_as_it_is(tmp_path: Path) -> None:
+def test_data_of_a_version_before_0_3_is_refused_and_left_as_it_is(tmp_path: Path) -> None:
     with zipfile.ZipFile(VERSION_0_1) as archive:
         archive.extractall(tmp_path / "before")
     before = digests(tmp_path / "before")
     with (
-        pytest.raises(InvalidInput, match=r"before 1\.0 made this database .*left as it is"),
+        pytest.raises(InvalidInput, match=r"before 0\.3 made this database .*left as it is"),
         opened(tmp_path / "before" / "data", None),
     ):
         pass
@@ -199,7 +199,7 @@ def test_data_of_a_version_before_1_0_is_refused_and_left_as_it_is(tmp_path: Pat
     assert {path: after.get(path) for path in before} == before
 
 
-def test_a_database_of_a_version_before_1_0_is_refused_on_postgresql(
+def test_a_database_of_a_version_before_0_3_is_refused_on_postgresql(
     postgresql: PostgresServer, tmp_path: Path
 ) -> None:
     with database_url("postgresql", postgresql) as url:

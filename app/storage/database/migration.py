@@ -19,15 +19,15 @@ CONNECTION = "connection"
 VERSION_TABLE = "version_table"
 """Likewise of the name of the table that has the revision."""
 _CORE_VERSION_TABLE = "alembic_version"
-_BEFORE_1_0 = frozenset(f"{number:04}" for number in range(1, 11))
-"""Revisions of the schemas before 1.0, whose data is not read."""
+_BEFORE_0_3 = frozenset(f"{number:04}" for number in range(1, 11))
+"""Revisions of the schemas before 0.3, whose data is not read."""
 
 
 def migrate(database: Database) -> None:
     """Upgrade the database to this version's schema in one transaction.
 
     Raises:
-        InvalidInput: if a newer version created it, or one before 1.0.
+        InvalidInput: if a newer version created it, or one before 0.3.
         StorageFailed: if the database is unavailable.
     """
     # Alembic logs two lines at INFO on every start.
@@ -119,15 +119,15 @@ def check_revisions(revisions: Iterable[str]) -> None:
     """Check that this version can read the tables of the core with these revisions.
 
     Raises:
-        InvalidInput: if a newer version made them, or one before 1.0.
+        InvalidInput: if a newer version made them, or one before 0.3.
     """
     released = {
         script.revision for script in ScriptDirectory.from_config(_config()).walk_revisions()
     }
     unknown = set(revisions) - released
-    if unknown and unknown <= _BEFORE_1_0:
+    if unknown and unknown <= _BEFORE_0_3:
         raise InvalidInput(
-            "a version of Racing Hexapods before 1.0 made this database (its schema is "
+            "a version of Racing Hexapods before 0.3 made this database (its schema is "
             f"{', '.join(sorted(unknown))}), which this version does not read; it was left as it "
             "is: open it with the version that made it, or choose another data folder or database"
         )

@@ -71,7 +71,7 @@ def check_file(path: Path, artifacts: Path) -> None:
 
     Raises:
         DamagedFile: if the file is empty or lacks tables.
-        InvalidInput: if a newer version made it, or one before 1.0.
+        InvalidInput: if a newer version made it, or one before 0.3.
     """
     if not path.exists():
         return
