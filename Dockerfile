@@ -4,7 +4,7 @@ WORKDIR /source
 # The dependencies first: this layer lasts until the lock changes.
 COPY requirements.lock .
 RUN /venv/bin/pip install --no-cache-dir --require-hashes --requirement requirements.lock
-COPY pyproject.toml README.md LICENSE ./
+COPY pyproject.toml hatch_build.py README.md LICENSE CITATION.cff ./
 COPY app app
 # The pages on words and ideas that the server shows.
 COPY docs/*.md docs/
