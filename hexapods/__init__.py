@@ -11,6 +11,7 @@ loaded when the first of them is used. `hexapods.environment` is the Gymnasium e
 
 Modules beside the packages, each of which has a map in its docstring:
 
+- `__main__`: `python -m hexapods`, the command of the dashboard.
 - `public`: the names of `hx`. Verbs and their results: `practice`, `changes`, `trainings`; `races`,
   `race_tables`; `repetition`, `comparisons`; `benchmarks`; `viewing`; `policies`,
   `result_table`. `arguments`: what a person may write for an agent, a robot or a world.
