@@ -132,6 +132,35 @@ check-page-types: $(PAGE_STAMP)
 docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs build/docs
 
+# Hatchling builds the wheel from the unpacked sdist: whoever has the sdist alone gets the same.
+.PHONY: distributions
+distributions: $(DEV_STAMP) ## Build sdist and wheel in dist/, and check what an index reads of them
+	rm -rf dist build/sdist && mkdir -p build/sdist
+	$(BIN)/python -m hatchling build --target sdist --directory dist
+	tar --extract --gzip --file dist/*.tar.gz --directory build/sdist --strip-components 1
+	cd build/sdist && $(CURDIR)/$(BIN)/python -m hatchling build --target wheel --directory $(CURDIR)/dist
+	$(BIN)/twine check --strict dist/*
+
+# Away from the repository: its .gitignore would hide from the linter what is below build/.
+.PHONY: check-sdist
+check-sdist: ## Run the first tier of checks in the sdist of dist/, in an environment of its own
+	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
+		tar --extract --gzip --file dist/*.tar.gz --directory "$$folder" --strip-components 1 && \
+		$(MAKE) --no-print-directory -C "$$folder" check
+
+.PHONY: release-check
+release-check: ## Rehearse a release as far as it goes without publishing; docs/releasing.md
+	@$(MAKE) --no-print-directory distributions
+	@$(MAKE) --no-print-directory check-sdist
+	@$(MAKE) --no-print-directory docs
+	$(BIN)/python -m pytest tests/test_release.py tests/test_release_check.py tests/test_workflows.py \
+		tests/test_container.py tests/test_distribution.py tests/test_wheel.py
+	@$(MAKE) --no-print-directory release-missing
+
+.PHONY: release-missing
+release-missing: $(DEV_STAMP)
+	@$(BIN)/python -m tests.release_check $(TAG)
+
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
 	HEXAPODS_SOAK=1 $(BIN)/python -m pytest tests/promises tests/runs/test_figures.py \
