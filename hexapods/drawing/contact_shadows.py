@@ -43,8 +43,6 @@ def add_shadows(
         batched_positions=positions,
         batched_scales=scales,
         lod="off",
-        cast_shadow=False,
-        receive_shadow=False,
     )
 
 

@@ -191,6 +191,4 @@ def _add(
         batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (len(positions), 1)),
         batched_colors=_flat_colors(colors),
         lod="off",
-        cast_shadow=False,
-        receive_shadow=False,
     )

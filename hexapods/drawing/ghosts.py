@@ -50,8 +50,6 @@ class PhotoFinish(Temporary):
                 bar.faces,
                 color=color,
                 position=(x, distance_m / 2, ground_m + 0.004),
-                cast_shadow=False,
-                receive_shadow=False,
             )
 
 
@@ -97,8 +95,6 @@ class Ghosts(Temporary):
             color=self._color,
             opacity=0.15 + 0.75 * newness,
             position=(0.0, ghost.distance_m, ghost.conditions.ground_m(0) + 0.004),
-            cast_shadow=False,
-            receive_shadow=False,
         )
 
     def _draw_robot(self, ghost: Ghost) -> None:

@@ -123,7 +123,6 @@ class LaneGround(Temporary):
             color=color,
             opacity=opacity,
             position=(0.0, 0.0, _LAYER_M + height),
-            cast_shadow=False,
         )
 
     def _draw_slope(self, slope: Slope, origin: Origin, top_m: float) -> None:
@@ -140,8 +139,6 @@ class LaneGround(Temporary):
             batched_wxyzs=np.tile(turned, (len(ys), 1)),
             batched_colors=batch_colors(np.tile(np.array(UPHILL, np.uint8), (len(ys), 1))),
             lod="off",
-            cast_shadow=False,
-            receive_shadow=False,
         )
         for number, y in enumerate(ys[::4] if self._is_labelled else ()):
             self._server.scene.add_label(

@@ -82,7 +82,6 @@ class PushArrows(Temporary):
                 shape.faces,
                 color=RED,
                 side="double",
-                receive_shadow=False,
                 position=(float(x), float(y), float(lane.qpos[2])),
                 wxyz=(math.cos(half), 0.0, 0.0, math.sin(half)),
             )

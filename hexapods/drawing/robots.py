@@ -73,8 +73,6 @@ class Robots:
                 batched_colors=batch_colors(colors),
                 opacity=GHOST_OPACITY if is_ghost else None,
                 lod="off",
-                cast_shadow=False,
-                receive_shadow=False,
             )
             self._batches.append(handle)
         if has_shadows:
@@ -221,7 +219,6 @@ class NameLabel:
             shape.faces,
             color=rgb(lane_spec.color),
             side="double",
-            receive_shadow=False,
             position=(x_m + 0.17, FINISH_LINE_M, 0.0),
             visible=False,
         )

@@ -62,7 +62,6 @@ def draw_sketch(
         color=_TABLE,
         opacity=0.55,
         position=(0.0, 0.0, _ABOVE_M * size),
-        cast_shadow=False,
     )
     _draw_shadows(server, sketch, size)
     for number, part in enumerate(sketch.parts):
@@ -75,7 +74,6 @@ def draw_sketch(
                 color=part_color(part.leg, groups),
                 flat_shading=True,
                 side="double",
-                receive_shadow=False,
             )
     for number, foot in enumerate(sketch.feet):
         scene.add_icosphere(
@@ -84,7 +82,6 @@ def draw_sketch(
             color=FOOT,
             opacity=0.75,
             position=foot.at_m,
-            cast_shadow=False,
         )
 
 
