@@ -3,6 +3,8 @@
 All are meshes of one lane, with its centre line at x = 0 and the start line at y = 0.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,6 +29,8 @@ _STEP_M, _SHORT_M, _LONG_M, _THIN_M = 0.05, 0.03, 0.05, 0.003
 _DIGIT_M = (0.024, 0.04, 0.005)
 """Width, height and width of the strokes of a digit."""
 _SPACE_M = 0.01
+_HALF_TURN: FloatArray = np.diag([-1.0, -1.0, 1.0])
+"""Rotation about the vertical."""
 _FREE_M = 0.06
 """Distance from start and finish line within which there are no digits."""
 _MARKED_M = (-0.15, 1.6)
@@ -60,22 +64,43 @@ def tint(width_m: float, color: Rgb) -> NDArray[np.uint8]:
 
 
 def distance_marks(width_m: float) -> NDArray[np.uint8]:
-    """Return the marks at the left border of a lane, as GLB, each 0.1 m with its distance [m].
+    """Return the marks at the left border of a lane, as GLB, longer ones each 0.1 m.
 
     They are white: `static/viewer/light.js` gives them a colour of the theme.
     """
-    left, shapes = -(width_m - _GAP_M) / 2, []
+    left = -(width_m - _GAP_M) / 2
+    lengths = {y: _LONG_M if is_long else _SHORT_M for y, is_long in _marked()}
+    shapes = [_at(strip(length, _THIN_M), left + length / 2, y) for y, length in lengths.items()]
+    return unlit_glb(joined(shapes), np.array(_WHITE, np.uint8))
+
+
+def distances(width_m: float, *, from_front: bool = False) -> NDArray[np.uint8]:
+    """Return the distances beside the longer marks of a lane [m], as GLB, white as these.
+
+    Args:
+        width_m: width of the lane [m].
+        from_front: whether they are readable for who looks towards the start line, in place of
+            those who look along the track.
+    """
+    x, shapes = -(width_m - _GAP_M) / 2 + _LONG_M + _SPACE_M, []
+    for y, is_long in _marked():
+        is_free = min(abs(y), abs(y - FINISH_LINE_M)) > _FREE_M
+        if is_long and y > 0 and is_free:
+            number = _number(f"{y:.1f}")
+            if from_front:
+                xs = number.vertices[:, 0]
+                number = number.moved(_HALF_TURN, np.array([xs.min() + xs.max(), 0.0, 0.0]))
+            shapes.append(_at(number, x, y))
+    return unlit_glb(joined(shapes), np.array(_WHITE, np.uint8))
+
+
+def _marked() -> Iterator[tuple[float, bool]]:
+    """Yield where marks are along the track [m], and whether each is a longer one."""
     first, last = (round(end_m / _STEP_M) for end_m in _MARKED_M)
     for number in range(first, last + 1):
-        y, is_long = round(number * _STEP_M, 9), number % 2 == 0
-        if y in (0.0, FINISH_LINE_M):
-            continue
-        length = _LONG_M if is_long else _SHORT_M
-        shapes.append(_at(strip(length, _THIN_M), left + length / 2, y))
-        is_free = min(abs(y), abs(y - FINISH_LINE_M)) > _FREE_M
-        if is_long and number > 0 and is_free:
-            shapes.append(_at(_number(f"{y:.1f}"), left + _LONG_M + _SPACE_M, y))
-    return unlit_glb(joined(shapes), np.array(_WHITE, np.uint8))
+        y = round(number * _STEP_M, 9)
+        if y not in (0.0, FINISH_LINE_M):
+            yield y, number % 2 == 0
 
 
 def start_line(width_m: float) -> NDArray[np.uint8]:

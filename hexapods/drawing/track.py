@@ -7,7 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from hexapods.drawing.colormap import Rgb
-from hexapods.drawing.lane_marks import distance_marks, finish_line, start_line, tint
+from hexapods.drawing.lane_marks import distance_marks, distances, finish_line, start_line, tint
 from hexapods.runs.clocks import FINISH_LINE_M
 
 WORLD = "/world"
@@ -106,15 +106,21 @@ def draw_lanes(
             f"{root}/tint{number}",
             tint(width, color),  # type: ignore[arg-type]
             position=(x, 0.0, _TINT_M),
-            cast_shadow=False,
-            receive_shadow=False,
         )
     lines = (
         ("start", "Start", start_line(width), 0.0),
         ("finish", "Finish", finish_line(width), FINISH_LINE_M),
     )
-    marks = _on_lanes(server, f"{root}/marks", distance_marks(width), xs, (0.0, 0.0, _MARKS_M))
-    handles = [(marks, _MARKS_M)]
+    marks = {
+        "marks": distance_marks(width),
+        # `static/viewer/light.js` shows those that can be read from where the camera is.
+        "distances": distances(width),
+        "distances-from-front": distances(width, from_front=True),
+    }
+    handles = [
+        (_on_lanes(server, f"{root}/{name}", glb, xs, (0.0, 0.0, _MARKS_M)), _MARKS_M)
+        for name, glb in marks.items()
+    ]
     for name, word, shape, y in lines:
         handle = _on_lanes(server, f"{root}/{name}", shape, xs, (0.0, y, _LINES_M))
         handles.append((handle, _LINES_M))
@@ -143,6 +149,4 @@ def _on_lanes(
         batched_positions=np.array([(x, 0.0, 0.0) for x in xs]),
         position=position,
         lod="off",
-        cast_shadow=False,
-        receive_shadow=False,
     )

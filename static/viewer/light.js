@@ -52,7 +52,7 @@
       mesh.renderOrder = ORDER.tint;
       unlit(mesh, theme.tint);
     }],
-    [/\/track\/marks$/, (mesh, theme) => unlit(mesh, theme.marks)],
+    [/\/track\/(marks|distances|distances-from-front)$/, (mesh, theme) => unlit(mesh, theme.marks)],
     [/\/track\/(start|finish)$/, (mesh) => unlit(mesh, "#ffffff")],
     [/\/grid\/(home|others)\/(fills|rims)$/, (mesh, theme) => {
       mesh.material.toneMapped = false;
@@ -118,6 +118,20 @@
     root.style.setProperty("--horizon", place);
   };
 
+  // ---- the distances on the lanes: of both readings the one that is upright for the camera
+
+  const chooseDistances = (camera) => {
+    const { nodeRefFromName } = viewer();
+    const nodes = ["distances", "distances-from-front"].map((name) => nodeRefFromName[`/world/run/track/${name}`]);
+    if (nodes.includes(undefined) || nodes.includes(null)) return;
+    const up = camera.matrixWorld.elements.slice(4, 7);
+    const along = nodes[0].matrixWorld.elements.slice(4, 7);
+    const isFromFront = up.reduce((sum, part, axis) => sum + part * along[axis], 0) < 0;
+    nodes.forEach((node, n) => node.traverse((part) => {
+      if (part.material) part.visible = isFromFront === (n === 1);
+    }));
+  };
+
   // ---- before each frame that is drawn
 
   const prepare = (renderer, camera) => {
@@ -127,6 +141,7 @@
       const change = changeOf(name);
       if (change) look(name, change, themeName);
     }
+    chooseDistances(camera);
     placeHorizon(camera);
   };
 

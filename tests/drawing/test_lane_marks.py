@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hexapods.drawing.colormap import rgb
-from hexapods.drawing.lane_marks import distance_marks, finish_line, start_line, tint
+from hexapods.drawing.lane_marks import distance_marks, distances, finish_line, start_line, tint
 from hexapods.runs.clocks import FINISH_LINE_M
 from tests.drawing.test_glb import array, read
 
@@ -44,7 +44,7 @@ def test_start_is_green_on_white() -> None:
     assert vertices[green, 2].min() > vertices[~green, 2].max()
 
 
-def test_marks_leave_the_lines_free_and_have_distances_each_ten_centimetres() -> None:
+def test_marks_leave_the_lines_free_and_are_longer_each_ten_centimetres() -> None:
     vertices, _ = painted(distance_marks(WIDTH_M))
     quads = vertices.reshape(-1, 4, 3)
     middles, widths = quads.mean(axis=1), np.ptp(quads[..., 0], axis=1)
@@ -56,11 +56,30 @@ def test_marks_leave_the_lines_free_and_have_distances_each_ten_centimetres() ->
     assert not np.isclose(middles[:, 1], FINISH_LINE_M, atol=0.02).any()
     assert (vertices[:, 0] >= -WIDTH_M / 2).all()
     assert np.abs(vertices[:, 0]).max() < WIDTH_M / 2
-    # Digits are right of the long marks, and as high as 0.04 m.
-    digits = middles[middles[:, 0] > middles[is_long, 0].mean() + 0.03]
-    near = digits[np.abs(digits[:, 1] - 0.2) < 0.03]
+
+
+@pytest.mark.parametrize("from_front", [False, True])
+def test_distances_are_beside_the_longer_marks_and_leave_the_lines_free(from_front: bool) -> None:
+    vertices, _ = painted(distances(WIDTH_M, from_front=from_front))
+    middles = vertices.reshape(-1, 4, 3).mean(axis=1)
+    near = middles[np.abs(middles[:, 1] - 0.2) < 0.03]
+
     assert len(near) == 6 + 1 + 5, "0.2 in segments"
-    assert not (np.abs(digits[:, 1]) < 0.04).any()
+    assert np.abs(vertices[:, 1] % 0.1 - 0.05).min() > 0.029, "as high as 0.04 m"
+    assert vertices[:, 0].min() > -WIDTH_M / 2 + 0.06
+    assert vertices[:, 0].max() < 0
+    assert not (np.abs(vertices[:, 1]) < 0.04).any()
+    assert not (np.abs(vertices[:, 1] - FINISH_LINE_M) < 0.03).any()
+
+
+def test_distances_from_the_front_are_those_from_behind_turned_in_their_places() -> None:
+    behind, front = (painted(distances(WIDTH_M, from_front=side))[0] for side in (False, True))
+    for y in (0.1, 0.7, 1.2):
+        numbers = [vertices[np.abs(vertices[:, 1] - y) < 0.04] for vertices in (behind, front)]
+        low, high = numbers[0].min(axis=0), numbers[0].max(axis=0)
+        turned = (low + high)[:2] - numbers[1][:, :2]
+
+        assert turned == pytest.approx(numbers[0][:, :2], abs=1e-6)
 
 
 def test_tint_is_pale_in_the_agents_hue_and_fades_out_at_both_ends() -> None:

@@ -45,6 +45,14 @@ MATERIAL = """async name => {
     return { opacity, roughness, toneMapped, color: found?.color?.getHexString() };
 }"""
 """Returns what the mesh of a node is made of, after a frame is drawn."""
+SHOWN = """names => names.filter((name) => {
+    let isShown = false;
+    window.__viserMutable.nodeRefFromName[`/world/run/track/${name}`]?.traverse((part) => {
+        isShown ||= Boolean(part.material && part.visible);
+    });
+    return isShown;
+})"""
+"""Returns those of the parts of the track that are drawn."""
 BRIGHTNESS = """() => {
     const intensities = [];
     window.__viserMutable.nodeRefFromName["/lamp"].traverse((part) => {
@@ -193,6 +201,26 @@ def test_materials_lights_and_shadows_are_those_of_the_theme(stage: Drawn) -> No
     wait_until(lambda: stage.viewer.evaluate(BRIGHTNESS) != in_dark)
 
 
+LOOK_FROM = """([y, z]) => {
+    const { camera, cameraControl, nodeRefFromName } = window.__viserMutable;
+    const { matrixWorld } = nodeRefFromName["/world"];
+    const [at, to] = [[y, z], [0, 0.1]].map(([along, up]) =>
+        camera.position.clone().set(0, along, up).applyMatrix4(matrixWorld));
+    cameraControl.setLookAt(at.x, at.y, at.z, to.x, to.y, to.z, false);
+    window.__viserMutable.requestRender();
+}"""
+"""Moves the camera to a place along the track and over it [m], from which it looks at the start."""
+
+
+def test_distances_are_upright_for_the_camera_from_behind_and_from_the_front(stage: Drawn) -> None:
+    stage.frame(frame_at_rest(race_of(2)))
+    names = ["distances", "distances-from-front"]
+    for y, readable in ((-2.0, "distances"), (2.0, "distances-from-front")):
+        stage.viewer.evaluate(LOOK_FROM, [y, 0.8])
+        wait_until(lambda readable=readable: stage.viewer.evaluate(SHOWN, names) == [readable])
+    assert stage.material("/world/run/track/distances")["toneMapped"] is False
+
+
 def test_the_horizon_is_where_a_level_view_meets_the_sky(stage: Drawn) -> None:
     stage.frame(frame_at_rest(race_of(2)))
 
@@ -203,21 +231,10 @@ def test_the_horizon_is_where_a_level_view_meets_the_sky(stage: Drawn) -> None:
         )
         return float(str(text).rstrip("%") or "nan")
 
-    def look(from_z: float) -> None:
-        stage.viewer.evaluate(
-            """z => {
-                const { camera, cameraControl, nodeRefFromName } = window.__viserMutable;
-                const { matrixWorld } = nodeRefFromName["/world"];
-                const [at, to] = [[-2, z], [0, 0.1]].map(([y, up]) =>
-                    camera.position.clone().set(0, y, up).applyMatrix4(matrixWorld));
-                cameraControl.setLookAt(at.x, at.y, at.z, to.x, to.y, to.z, false);
-            }""",
-            from_z,
-        )
-
-    look(0.1)
-    wait_until(lambda: abs(horizon() - 50) < 1)
-    look(0.5)
-    wait_until(lambda: 5 < horizon() < 45)
-    look(4.0)
-    wait_until(lambda: horizon() == 0)
+    for z, condition in (
+        (0.1, lambda: abs(horizon() - 50) < 1),
+        (0.5, lambda: 5 < horizon() < 45),
+        (4.0, lambda: horizon() == 0),
+    ):
+        stage.viewer.evaluate(LOOK_FROM, [-2.0, z])
+        wait_until(condition)
