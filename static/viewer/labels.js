@@ -2,8 +2,9 @@
 // theme, and on top of each other; here they follow the theme and give way to each other.
 // Assumptions about viser's client are listed and tested in hexapods/drawing/viser_internals.
 //
-//   events   hexapods:show {lanes?: colours of the lanes, covered?: [{left, top, right, bottom}], what is shown over
-//            the picture, in pixels of it}
+//   events   hexapods:show {lanes?: colours of the lanes, names?: what their robots are called in place of the names of
+//            their agents, labelPx?: size of the type on a projector, covered?: [{left, top, right, bottom}], what is
+//            shown over the picture, in pixels of it}
 //            hexapods:draw {messages: of viser}
 (() => {
   "use strict";
@@ -15,12 +16,14 @@
   const SHIFTS = [0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.1, 1.1];
   const [SIDEWAYS, BELOW_PX] = [0.8, 40];
 
-  /** Name of the scene node → {element, anchor, size}; the size is unknown until it is measured. */
+  /** Name of the scene node → {element, anchor, text, size}; the size is unknown until it is measured. */
   const labels = new Map();
   let covered = [];
   /** Height of the highest label of a robot so far [px]. */
   let highest = 0;
   let lanes = [];
+  let names = [];
+  let labelPx = null;
 
   const layer = document.createElement("div");
   layer.className = "labels";
@@ -54,8 +57,15 @@
     if (!layer.isConnected) start();
   };
 
+  /** The text of a label with the name that its robot has here; at the photo finish its place is before that. */
+  const named = ({ name, text }) => {
+    const called = names[laneOf(name)];
+    return called ? text.replace(/^(\d+\. )?.*/, (_, place = "") => `${place}${called}`) : text;
+  };
+
   const write = (label, text) => {
-    label.element.replaceChildren(...text.split("\n").map((line) => {
+    label.text = text;
+    label.element.replaceChildren(...named(label).split("\n").map((line) => {
       const element = document.createElement("div");
       element.textContent = line;
       return element;
@@ -74,6 +84,19 @@
   const paint = ({ name, element }) => {
     const lane = laneOf(name);
     if (lane !== null && lanes[lane]) element.style.setProperty("--agent", lanes[lane]);
+  };
+
+  const rename = (next) => {
+    if (String(next) === String(names)) return;
+    names = next;
+    labels.forEach((label) => write(label, label.text));
+  };
+
+  const resize = (px) => {
+    if (px === labelPx) return;
+    labelPx = px;
+    document.documentElement.style.setProperty("--label", `${px}px`);
+    measureAnew();
   };
 
   // ---- messages that the page draws come by the client's queue
@@ -114,6 +137,8 @@
     covered = detail.covered ?? covered;
     lanes = detail.lanes ?? lanes;
     labels.forEach(paint);
+    rename(detail.names ?? names);
+    resize(detail.labelPx ?? labelPx);
     window.__viserMutable?.requestRender();
   });
 
@@ -121,16 +146,18 @@
 
   const start = () => {
     document.body.append(layer);
-    addEventListener("resize", () => {
-      highest = 0;
-      labels.forEach((label) => (label.size = null));
-    });
+    addEventListener("resize", measureAnew);
     const attach = () => {
       const { scene } = window.__viserMutable ?? {};
       if (scene) scene.onAfterRender = place;
       else requestAnimationFrame(attach);
     };
     attach();
+  };
+
+  const measureAnew = () => {
+    highest = 0;
+    labels.forEach((label) => (label.size = null));
   };
 
   /** Those of the robots come first, and last the words on the ground, which are left out where there is no room. */

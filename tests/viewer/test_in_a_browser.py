@@ -205,6 +205,30 @@ def test_labels_follow_the_theme_and_do_not_overlap(stage: Stage) -> None:
     wait_until(lambda: "Another" not in labels.all_inner_texts())
 
 
+def test_robots_are_called_as_the_page_says(stage: Stage) -> None:
+    for lane, x in enumerate((-0.5, 0.5)):
+        stage.server.scene.add_label(
+            f"/world/named/lane{lane}/label",
+            f"{lane + 1}. TAMER\n0.10 m",
+            position=(x, 0.0, 0.0),
+            anchor="bottom-center",
+        )
+    stage.update()
+    labels = stage.viewer.locator(".labels > div:not([hidden])")
+
+    def names() -> set[str]:
+        return {text.split("\n")[0] for text in labels.all_inner_texts()}
+
+    wait_until(lambda: {"1. TAMER", "2. TAMER"} <= names())
+    stage.show(names=["The class"])
+    wait_until(lambda: {"1. The class", "2. TAMER"} <= names())
+    stage.show(names=[])
+    wait_until(lambda: {"1. TAMER", "2. TAMER"} <= names())
+    stage.server.scene.remove_by_name("/world/named")
+    stage.update()
+    wait_until(lambda: not {"1. TAMER", "2. TAMER"} & names())
+
+
 def test_leg_and_cell_that_are_clicked_are_told_to_the_host(stage: Stage) -> None:
     spec = race_of(1)
     lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))

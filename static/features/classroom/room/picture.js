@@ -1,5 +1,5 @@
 // The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
-import { effect, untracked } from "@preact/signals";
+import { computed, effect, untracked } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { noteWatched } from "../api.js";
 import { html, Icon } from "../../../js/components/elements.js";
@@ -11,6 +11,7 @@ import {
   closeReplay, drawIn, endTime, followPlayer, isBuffering, openReplay, playback, playReplay, plan, position,
   replayProblem, setReplaySpeed,
 } from "../../../js/player.js";
+import { laneNames } from "./lane-names.js";
 import { arrived, code, isProjector, isTeaching, ownRunId, replayed, room, toReplay } from "./room.js";
 
 /** @import { Message } from "../../../js/replay-frames.js" */
@@ -49,6 +50,13 @@ function followOwnRun() {
   });
 }
 
+/** Size of the labels in the picture on a projector, against the type around it. */
+const LABEL_EM = 0.75;
+const emPx = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
+
+/** Colours of the lanes in the picture, as a text, which stays the same while the robots walk. */
+const colours = computed(() => (scene.value?.lanes ?? []).map(({ color }) => color).join(" "));
+
 /** What this page plays, in 3D. @param {{ isProjected?: boolean }} props */
 export function Picture({ isProjected = false }) {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
@@ -67,10 +75,16 @@ export function Picture({ isProjected = false }) {
     addEventListener("message", onMessage);
     return () => removeEventListener("message", onMessage);
   }, []);
+  const [lanes, names] = [colours.value, laneNames.value];
   useEffect(() => {
-    const message = { type: "hexapods:show", theme: shownTheme.value, isProjected, ...directions.value };
-    frame.current?.contentWindow?.postMessage(message, globalThis.origin);
-  }, [shownTheme.value, status, directions.value]);
+    const show = () => frame.current?.contentWindow?.postMessage({
+      type: "hexapods:show", theme: shownTheme.value, isProjected, lanes: lanes.split(" "), names: names.split("\n"),
+      ...(isProjected ? { labelPx: LABEL_EM * emPx() } : {}), ...directions.value,
+    }, globalThis.origin);
+    show();
+    addEventListener("resize", show);
+    return () => removeEventListener("resize", show);
+  }, [shownTheme.value, status, lanes, names, directions.value]);
   return html`
     <div class="room-picture" data-status=${status}>
       <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>

@@ -9,6 +9,7 @@ import { codeInGroups, metres, shortAddress } from "../../../js/format.js";
 import { Away } from "./join.js";
 import { actOf } from "./acts/index.js";
 import { walkedRow } from "./acts/distances.js";
+import { useBox } from "./acts/plot.js";
 import { clockInWords } from "./clocks.js";
 import { Picture } from "./picture.js";
 import { earlyEndOf, isShownToEnd } from "../../../js/narrative/moment.js";
@@ -21,8 +22,8 @@ import { axisOf } from "./scores.js";
 /** @import { Ask, Classroom } from "../../../js/types.js" */
 /** @import { Act, Facts } from "./acts/index.js" */
 
-/** Size of the dots, against those of a strip in a panel. */
-const DOTS = 4;
+/** Size of the type at which dots are as large as in a panel [px]. */
+const PANEL_PX = 9;
 
 /** For so long the end of a run is looked at. */
 const FINISH_MS = 2500;
@@ -221,11 +222,12 @@ const Of = ({ number, all, word }) => html`
 function Landing({ classroom }) {
   const { title, values, typical } = /** @type {NonNullable<ReturnType<typeof walkedRow>>} */ (
     walkedRow(classroom, shownResults.value));
+  const [host, { em }] = useBox();
   return html`
-    <div class="landing">
+    <div class="landing" ref=${host}>
       <p>${title}</p>
-      <${DotStrip} ...${axisOf(values)} size=${DOTS} label=${title} points=${values} typical=${typical}
-        axis=${metres} />
+      <${DotStrip} ...${axisOf(values)} size=${Math.max(1, em / PANEL_PX)} label=${title} points=${values}
+        typical=${typical} axis=${metres} />
     </div>
   `;
 }

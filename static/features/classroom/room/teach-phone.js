@@ -3,8 +3,10 @@ import { useEffect } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
 import { metres } from "../../../js/format.js";
 import { position } from "../../../js/player.js";
+import { rivalTeacher } from "./lane-names.js";
 import { Picture } from "./picture.js";
 import { PressStrip } from "./press-strip.js";
+import { room } from "./room.js";
 import { newestPress, ownPresses, press, pressProblem, teaching } from "./teaching.js";
 
 /** @import { TeachingState } from "../../../js/types.js" */
@@ -76,7 +78,8 @@ const Buttons = ({ isOn }) => html`
 const Walks = ({ now }) => html`
   <div class="own-distance" role="status">
     <b class="num">${metres(now.taught?.distance_m ?? null)}</b>
-    <span class="dim">walks your robot in 50 steps; the one that the reward taught ${" "}
+    <span class="dim">walks your robot in 50 steps; the one that
+      ${" "}${rivalTeacher(room.value?.shown.teach)} taught ${" "}
       ${metres(now.rival?.distance_m ?? null)}</span>
   </div>
 `;

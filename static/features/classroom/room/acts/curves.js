@@ -53,7 +53,7 @@ function Reveal({ classroom, results }) {
           <g class="curve-key">
             <text class="predicted" x=${LEFT_EM * em} y=${em}>${count(predicted.length, `predicted ${thing}`)}</text>
             <text class="walked" x=${width} y=${em} text-anchor="end">
-              ${count(curves.length, "robot")} learned${mean.length > 1 ? ", bold: typically" : ""}
+              ${count(curves.length, "robot")}${mean.length > 1 ? ", bold: typical" : ""}
             </text>
           </g>
           <g transform=${`translate(${LEFT_EM * em} ${KEY_EM * em})`}>

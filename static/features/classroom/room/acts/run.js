@@ -1,11 +1,9 @@
 // A run on the room's stage: one robot that the teacher shows, or the robots of the class that race together.
 import { html } from "../../../../js/components/elements.js";
 import { count, metres } from "../../../../js/format.js";
+import { racersOf, UNKNOWN } from "../lane-names.js";
 
-/** @import { CardResults } from "../../../../js/types.js" */
 /** @import { Act, Facts } from "./index.js" */
-
-const UNKNOWN = "One of you";
 
 /** @param {Facts} facts */
 const Caption = (facts) => (isClassRace(facts) ? html`<${Racers} ...${facts} />` : html`<${Walker} ...${facts} />`);
@@ -34,16 +32,6 @@ const Racers = ({ results, colors, clock }) => html`
     <li class="dim">${clock ?? `of ${count(results?.race?.of ?? 0, "robot")}`}</li>
   </ul>
 `;
-
-/** The places of a class race with the names of who has them, by lane. @param {CardResults | null} results */
-export function racersOf(results) {
-  const { seeds = [] } = results?.race ?? {};
-  const places = seeds.length === 1 ? ["The only one"] : seeds.length === 2 ? ["Best", "Last"]
-    : ["Best", "Median", "Last"];
-  return seeds.map((seed, n) => ({
-    place: places[n], name: results?.entries.find((entry) => entry.seed === seed)?.name ?? UNKNOWN,
-  }));
-}
 
 /** What is revealed of the card follows the class's race; a robot that the teacher shows stays. @type {Act} */
 export const RUN = {

@@ -5,6 +5,7 @@ import { html } from "../../../../js/components/elements.js";
 import { count, metres } from "../../../../js/format.js";
 import { playback, position } from "../../../../js/player.js";
 import { playhead } from "../../../../js/store.js";
+import { rivalTeacher } from "../lane-names.js";
 import { PressStrip } from "../press-strip.js";
 import { room } from "../room.js";
 import { countsOf, teaching } from "../teaching.js";
@@ -16,18 +17,19 @@ const TELL_MS = 400;
 const MESSAGE = "hexapods:beside";
 
 /** @param {Facts} facts */
-function Teach({ isRevealed }) {
+function Teach({ classroom, isRevealed }) {
   const now = /** @type {TeachingState} */ (teaching.value);
+  const by = rivalTeacher(classroom.shown.teach);
   const isTold = isRevealed && now.taught !== null && now.taught.distance_m !== null;
   return html`
     <p class="robot-name of-class">${isTold ? "Their race" : "Taught by you"}</p>
     ${isTold
-      ? html`<${Tables} now=${now} />`
-      : html`<${RivalRobot} run_id=${now.rival?.run_id ?? null} />`}
+      ? html`<${Tables} now=${now} by=${by} />`
+      : html`<${RivalRobot} run_id=${now.rival?.run_id ?? null} by=${by} />`}
     <section class="teach-strip" aria-label="What you press">
       <p class="press-key"><b class="plus">+</b><b class="minus">−</b></p>
       <${PressStrip} presses=${now.presses} first=${0} steps=${now.steps} />
-      ${isTold ? html`<${Outcome} now=${now} />` : html`<${Count} now=${now} />`}
+      ${isTold ? html`<${Outcome} now=${now} by=${by} />` : html`<${Count} now=${now} />`}
     </section>
   `;
 }
@@ -45,10 +47,10 @@ function Count({ now }) {
   `;
 }
 
-/** What was taught, and how far it goes. @param {{ now: TeachingState }} props */
-function Outcome({ now: { presses, taught, rival } }) {
+/** What was taught, and how far it goes. @param {{ now: TeachingState, by: string }} props */
+function Outcome({ now: { presses, taught, rival }, by }) {
   const { praised, rebuked } = countsOf(presses);
-  const rows = [["you", taught?.distance_m ?? 0], ["the reward", rival?.distance_m ?? 0]];
+  const rows = [["you", taught?.distance_m ?? 0], [by, rival?.distance_m ?? 0]];
   const far = Math.max(0.01, ...rows.map(([, distance_m]) => Math.abs(Number(distance_m))));
   return html`
     <div class="teach-outcome">
@@ -69,8 +71,8 @@ function Outcome({ now: { presses, taught, rival } }) {
   `;
 }
 
-/** The other robot, at the same moment of its practice. @param {{ run_id: string | null }} props */
-function RivalRobot({ run_id }) {
+/** The other robot, at the same moment of its practice. @param {{ run_id: string | null, by: string }} props */
+function RivalRobot({ run_id, by }) {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [address] = useState(() => `${room.peek()?.code}?beside`);
   useEffect(() => {
@@ -84,16 +86,16 @@ function RivalRobot({ run_id }) {
   }, [run_id]);
   return html`
     <section class="rival-robot" aria-label="The other robot">
-      <iframe ref=${frame} src=${address} title="The robot that the reward teaches, in 3D" tabindex="-1"></iframe>
-      <p class="robot-name">Taught by the reward</p>
+      <iframe ref=${frame} src=${address} title=${`The robot that ${by} teaches, in 3D`} tabindex="-1"></iframe>
+      <p class="robot-name">Taught by ${by}</p>
     </section>
   `;
 }
 
-/** What both have learned. @param {{ now: TeachingState }} props */
-const Tables = ({ now }) => html`
+/** What both have learned. @param {{ now: TeachingState, by: string }} props */
+const Tables = ({ now, by }) => html`
   <section class="rival-robot tables" aria-label="What they have learned">
-    ${[[now.taught, "you"], [now.rival, "the reward"]].map(([robot, name]) => robot && html`
+    ${[[now.taught, "you"], [now.rival, by]].map(([robot, name]) => robot && html`
       <${Learned} key=${name} run_id=${/** @type {any} */ (robot).run_id} name=${name} />
     `)}
   </section>

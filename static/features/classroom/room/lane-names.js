@@ -1,0 +1,38 @@
+// What the robots in the picture are called where their agents' names tell nothing: pupils, and who taught.
+import { computed } from "@preact/signals";
+import { scene } from "../../../js/store.js";
+import { room, shownResults } from "./room.js";
+import { teaching } from "./teaching.js";
+
+/** @import { CardResults } from "../../../js/types.js" */
+
+/** A robot of the class whose pupil is not known. */
+export const UNKNOWN = "One of you";
+
+/** The places of a class race with the names of who has them, by lane. @param {CardResults | null} results */
+export function racersOf(results) {
+  const { seeds = [] } = results?.race ?? {};
+  const places = seeds.length === 1 ? ["The only one"] : seeds.length === 2 ? ["Best", "Last"]
+    : ["Best", "Median", "Last"];
+  return seeds.map((seed, n) => ({
+    place: places[n], name: results?.entries.find((entry) => entry.seed === seed)?.name ?? UNKNOWN,
+  }));
+}
+
+/** Who teaches a robot, in words. @type {Record<string, string>} */
+const TEACHERS = { reward: "the reward", simulated: "a simulated person" };
+
+/** Who teaches the robot beside that of the class. @param {{ rival?: string } | null | undefined} teach */
+export const rivalTeacher = (teach) => TEACHERS[teach?.rival ?? "reward"];
+
+/** The names by lane, as a text with a line for each; empty where the agents' names stay. */
+export const laneNames = computed(() => {
+  const run_id = scene.value?.run_id ?? null;
+  if (run_id === null) return "";
+  if (run_id === shownResults.value?.race?.run_id) {
+    return racersOf(shownResults.value).map(({ name }) => name).join("\n");
+  }
+  const now = teaching.value;
+  if (run_id === now?.race_id) return `Taught by you\nTaught by ${rivalTeacher(room.value?.shown.teach)}`;
+  return run_id === now?.taught?.run_id ? "Your robot" : "";
+});
