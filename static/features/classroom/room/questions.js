@@ -39,9 +39,15 @@ import { errorInWords, PER_METRE } from "./scores.js";
 
 // ---- one of several texts, which may be names of agents that race
 
+/** Longer texts are no names any more. */
+const NAME_CHARACTERS = 14;
+
+/** @param {Ask} ask */
+const hasSentences = ({ choices }) => (choices ?? []).some((choice) => agentOf(choice).title.length > NAME_CHARACTERS);
+
 /** @param {ControlProps} props */
 const Choice = ({ ask, locked, draft, onValue }) => html`
-  <div class="choices" role="group" aria-label="Your prediction">
+  <div class=${`choices ${hasSentences(ask) ? "sentences" : ""}`} role="group" aria-label="Your prediction">
     ${(ask.choices ?? []).map((choice) => html`
       <button key=${choice} class="choice-chip" aria-pressed=${(locked ?? draft) === choice ? "true" : "false"}
         disabled=${locked !== undefined} onClick=${() => onValue(choice)}>${agentOf(choice).title}</button>
