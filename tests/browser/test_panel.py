@@ -12,8 +12,10 @@ from tests.browser.test_workspace import PRACTICE, RACE
 
 pytestmark = pytest.mark.timeout(300)
 
-LEAST_CHART = {1920: (360, 220), 1440: (360, 220), 1280: (320, 220)}
-"""Least width and height of what is plotted, by the width of the window [px]."""
+LEAST_CHART = (360, 220)
+"""Least width and height of what is plotted [px]."""
+LEAST_STAGE = (828, 524)
+"""Least width and height of the picture [px]."""
 WIDTHS: list[ViewportSize] = [
     {"width": 1920, "height": 1080},
     {"width": 1440, "height": 900},
@@ -126,9 +128,11 @@ def test_charts_fill_the_panel_with_what_there_is(dashboard: Dashboard, server: 
         }.items():
             dashboard.open_tab(title)
             width, height = plotted(dashboard, selector)
-            least_width, least_height = LEAST_CHART[size["width"]]
-            if width < least_width or height < least_height:
+            if width < LEAST_CHART[0] or height < LEAST_CHART[1]:
                 small[f"{title} at {size['width']}"] = (width, height)
+        stage = dashboard.box(".picture")
+        if stage["width"] < LEAST_STAGE[0] or stage["height"] < LEAST_STAGE[1]:
+            small[f"Stage at {size['width']}"] = (stage["width"], stage["height"])
     assert small == {}
 
     # Of a race of 90 s five are shown, and of 0.45 m to the finish line 0.11.
