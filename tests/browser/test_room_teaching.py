@@ -134,6 +134,7 @@ def test_thirty_pupils_teach_a_robot_to_walk(
         shot(pupil.page, "phone-teaching")
         shot(teacher.page, "cockpit-teaching")
         fills_the_screen(screen)
+        robots_fill(screen, ".robots iframe", ".rival-robot iframe")
 
         pupils.join()
         pupil.sees("The robot has learned from you.")
@@ -147,6 +148,7 @@ def test_thirty_pupils_teach_a_robot_to_walk(
         shot(screen, "projector-revealed")
         shot(pupil.page, "phone-revealed")
         fills_the_screen(screen)
+        robots_fill(screen, ".robots iframe", ".rival-robot.tables")
 
 
 def presses_by_thumb_and_by_key(pupil: RoomPage) -> None:
@@ -167,6 +169,17 @@ def fills_the_screen(screen: Page) -> None:
     )
     assert size == [SCREEN["width"], SCREEN["height"]]
     assert small_texts(screen, LEAST_PX) == []
+
+
+def robots_fill(screen: Page, *parts: str) -> None:
+    """Check that both halves of the picture are as large as they can be, beside each other."""
+    left, right = (screen.locator(part).bounding_box() for part in parts)
+    assert left is not None
+    assert right is not None
+    for box in (left, right):
+        assert box["width"] > 0.4 * SCREEN["width"]
+        assert box["height"] > 0.4 * SCREEN["height"]
+    assert left["x"] + left["width"] <= right["x"]
 
 
 def was_taught(api: httpx2.Client, code: str, run_id: str, pupils: RestPupils) -> None:

@@ -25,7 +25,7 @@ from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.text import MAX_NAME, check_name
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
-from hexapods.runs.results import TrainingResult
+from hexapods.runs.results import RaceResult, TrainingResult
 
 TAUGHT, RIVAL, RACE = "taught", "rival", "race"
 RIVALS = {"reward": "reward", "simulated": "simulated person"}
@@ -57,8 +57,8 @@ class TaughtRobot(Answer):
 
     Attributes:
         run_id: id of its training.
-        distance_m: how far it walks in 50 steps now that it has learned [m]; null before the
-            reveal, but for a teacher.
+        distance_m: how far it walks in 50 steps now that it has learned [m]: in the race of both
+            as soon as that is computed; null before the reveal, but for a teacher.
     """
 
     run_id: str
@@ -265,8 +265,8 @@ class Teaching:
             steps=teach.steps,
             step_s=config.robot.step_s,
             presses=[] if run is None else self._presses(run),
-            taught=_robot(run, is_told=is_told),
-            rival=_robot(self._part(room, RIVAL), is_told=is_told),
+            taught=_robot(run, race, is_told=is_told),
+            rival=_robot(self._part(room, RIVAL), race, is_told=is_told),
             race_id=None if race is None else race.id,
         )
 
@@ -387,9 +387,14 @@ def _state(room: Room, run: Run | None) -> Literal["ready", "teaching", "frozen"
     return "frozen" if room.is_frozen else "teaching"
 
 
-def _robot(run: Run | None, *, is_told: bool) -> TaughtRobot | None:
+def _robot(run: Run | None, race: Run | None, *, is_told: bool) -> TaughtRobot | None:
     if run is None:
         return None
-    result = run.result
-    distance_m = result.distance_m if is_told and isinstance(result, TrainingResult) else None
-    return TaughtRobot(run_id=run.id, distance_m=distance_m)
+    if not is_told:
+        return TaughtRobot(run_id=run.id, distance_m=None)
+    raced = race.result.lanes if race is not None and isinstance(race.result, RaceResult) else ()
+    walked = {lane.training_id: lane.total_distance_m for lane in raced}
+    evaluated = run.result.distance_m if isinstance(run.result, TrainingResult) else None
+    return TaughtRobot(
+        run_id=run.id, distance_m=evaluated if walked.get(run.id) is None else walked[run.id]
+    )

@@ -3,9 +3,13 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { actOf } from "../../../static/features/classroom/room/acts/index.js";
 import { meanCurve } from "../../../static/features/classroom/room/acts/mean-curve.js";
+import { racedAmong } from "../../../static/features/classroom/room/acts/run.js";
 import { plotAxis, stackedDots } from "../../../static/features/classroom/room/acts/plot-geometry.js";
 import { settingDots } from "../../../static/features/classroom/room/acts/setting-dots.js";
 import { predictionsOf, winsOf } from "../../../static/features/classroom/room/acts/predictions.js";
+import { laneNames } from "../../../static/features/classroom/room/lane-names.js";
+import { results as resultsByCard, room } from "../../../static/features/classroom/room/room.js";
+import { scene } from "../../../static/js/store.js";
 import { teaching } from "../../../static/features/classroom/room/teaching.js";
 
 /** Facts of a card, as far as an act is chosen by them. @param {any} changes @returns {any} */
@@ -98,4 +102,34 @@ test("races are counted by who won them, and answers as far as there are any", (
   assert.deepEqual([by.get("greedy"), by.get("q-learning"), races], [2, 1, 2]);
   assert.deepEqual(predictionsOf(results), ["greedy", 0]);
   assert.deepEqual(predictionsOf(null), []);
+});
+
+test("robots of the class are called by their pupils, those that are taught by their teachers", () => {
+  /** @type {any} */
+  const card = {
+    race: { run_id: "race", seeds: [4, 2, 9], of: 5 },
+    entries: [{ seed: 2, name: "Jolly Swan" }, { seed: 4, name: "Patient Seal" }],
+  };
+  const named = (/** @type {string | null} */ run_id) => {
+    scene.value = /** @type {any} */ ({ run_id, lanes: [] });
+    return laneNames.value;
+  };
+  resultsByCard.value = { 0: card };
+  assert.equal(named("race"), "Patient Seal\nJolly Swan\nOne of you");
+  assert.equal(named("other"), "");
+  assert.equal(named(null), "");
+  teaching.value = /** @type {any} */ ({ race_id: "both", taught: { run_id: "taught" } });
+  assert.equal(named("both"), "Taught by you\nTaught by the reward");
+  assert.equal(named("taught"), "Your robot");
+  room.value = /** @type {any} */ ({ shown: { teach: { rival: "simulated" } } });
+  assert.equal(named("both"), "Taught by you\nTaught by a simulated person");
+  resultsByCard.value = {};
+  [teaching, room, scene].forEach((signal) => (signal.value = null));
+});
+
+test("a race of the class says among which robots it has the best", () => {
+  const among = (/** @type {number} */ of, /** @type {number} */ finished) =>
+    racedAmong(/** @type {any} */ ({ finished, race: { of } }));
+  assert.equal(among(5, 5), "of 5 robots");
+  assert.equal(among(3, 5), "of the 3 of 5 robots that walk alike");
 });

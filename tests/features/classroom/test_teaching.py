@@ -139,8 +139,9 @@ def test_both_robots_race_at_the_reveal_and_distances_are_told_then(school: Clas
         revealed["taught"]["run_id"],
         revealed["rival"]["run_id"],
     ]
-    assert revealed["taught"]["distance_m"] is not None
-    assert revealed["rival"]["distance_m"] is not None
+    told = pupil.get(f"/rooms/{code}/teaching")
+    walked = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
+    assert [told[robot]["distance_m"] for robot in ("taught", "rival")] == walked
 
 
 def test_a_card_that_teaches_can_be_started_when_it_is_stored(school: Class) -> None:

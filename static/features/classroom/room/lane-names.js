@@ -1,7 +1,7 @@
 // What the robots in the picture are called where their agents' names tell nothing: pupils, and who taught.
 import { computed } from "@preact/signals";
 import { scene } from "../../../js/store.js";
-import { room, shownResults } from "./room.js";
+import { results as resultsByCard, room } from "./room.js";
 import { teaching } from "./teaching.js";
 
 /** @import { CardResults } from "../../../js/types.js" */
@@ -29,9 +29,9 @@ export const rivalTeacher = (teach) => TEACHERS[teach?.rival ?? "reward"];
 export const laneNames = computed(() => {
   const run_id = scene.value?.run_id ?? null;
   if (run_id === null) return "";
-  if (run_id === shownResults.value?.race?.run_id) {
-    return racersOf(shownResults.value).map(({ name }) => name).join("\n");
-  }
+  // The race of the card before stays on the stage until something else is shown.
+  const raced = Object.values(resultsByCard.value).find(({ race }) => race?.run_id === run_id);
+  if (raced) return racersOf(raced).map(({ name }) => name).join("\n");
   const now = teaching.value;
   if (run_id === now?.race_id) return `Taught by you\nTaught by ${rivalTeacher(room.value?.shown.teach)}`;
   return run_id === now?.taught?.run_id ? "Your robot" : "";

@@ -18,8 +18,9 @@ function Page() {
 
 // A class of phones needs neither.
 const STYLE = "features/classroom/style";
-const loadProjector = () => withStyle(`${STYLE}/room-projector.css`,
-  withStyle(`${STYLE}/teach.css`, import("./projector.js"))).then(({ Projector }) => Projector);
+// The inner style is the first in the page: that of a card that teaches changes what the projector's says.
+const loadProjector = () => withStyle(`${STYLE}/teach.css`,
+  withStyle(`${STYLE}/room-projector.css`, import("./projector.js"))).then(({ Projector }) => Projector);
 const loadBeside = () => withStyle(`${STYLE}/teach.css`, import("./beside.js"))
   .then(({ Beside }) => Beside);
 const loadCockpit = () => import("./cockpit.js").then(({ Cockpit }) => Cockpit);

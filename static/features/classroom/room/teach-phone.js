@@ -7,7 +7,7 @@ import { rivalTeacher } from "./lane-names.js";
 import { Picture } from "./picture.js";
 import { PressStrip } from "./press-strip.js";
 import { room } from "./room.js";
-import { newestPress, ownPresses, press, pressProblem, teaching } from "./teaching.js";
+import { isTold, newestPress, ownPresses, press, pressProblem, teaching } from "./teaching.js";
 
 /** @import { TeachingState } from "../../../js/types.js" */
 
@@ -17,7 +17,7 @@ const SAID = {
   ready: "Your teacher starts the robot. Then press for what you see.",
   teaching: "Press for the step that you see. You count once a step; the mean of the class teaches.",
   frozen: "The robot waits.",
-  ended: "The robot has learned from you. Look to the front.",
+  ended: "The robot has learned from you.",
 };
 /** @type {Record<string, 1 | -1>} */
 const KEYS = { "+": 1, "=": 1, "-": -1, "\u2212": -1, "_": -1 };
@@ -45,9 +45,10 @@ export function TeachOnPhone() {
     <section class="own-robot teach" aria-label="The robot of the class">
       <${Picture} />
       ${now && now.state !== "ready" && html`<${Moments} now=${now} />`}
-      <p class="teach-said" role="status">${now ? SAID[now.state] : "The robot comes…"}</p>
+      <p class="teach-said" role="status">${now ? SAID[now.state] : "The robot comes…"}
+        ${now?.state === "ended" && !isTold.value && " Look to the front."}</p>
       ${pressProblem.value && isOn && html`<p class="teach-said bad" role="alert">${pressProblem}</p>`}
-      ${now?.taught?.distance_m && html`<${Walks} now=${now} />`}
+      ${now?.taught && isTold.value && html`<${Walks} now=${now} />`}
     </section>
     ${now?.state !== "ended" && html`<${Buttons} isOn=${isOn} />`}
   `;

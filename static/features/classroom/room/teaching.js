@@ -1,7 +1,8 @@
 // What the class of a room teaches: its robots, the presses by step, and those of one's own.
-import { effect, signal, untracked } from "@preact/signals";
+import { computed, effect, signal, untracked } from "@preact/signals";
 import * as api from "../api.js";
-import { connection } from "../../../js/store.js";
+import { isShownToEnd } from "../../../js/narrative/moment.js";
+import { connection, scene } from "../../../js/store.js";
 import { code, isTeaching, newestTeaching, room } from "./room.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -18,6 +19,11 @@ export const ownPresses = signal({});
 export const newestPress = signal(null);
 /** Why the newest press does not count; empty if it does. */
 export const pressProblem = signal("");
+
+/** Id of the newest race of both robots that this page has shown to its end. @type {Signal<string | null>} */
+const racedToEnd = signal(null);
+/** Whether the picture has been where it can be told how far both walk. */
+export const isTold = computed(() => racedToEnd.value !== null && racedToEnd.value === teaching.value?.race_id);
 
 export async function refreshTeaching() {
   if (!isTeaching.peek()) return;
@@ -45,6 +51,12 @@ effect(() => {
     if (known === null || event.card !== known.card || event.presses.length === 0) refreshTeaching();
     else teaching.value = { ...known, presses: [...known.presses, ...event.presses] };
   });
+});
+effect(() => {
+  const id = teaching.value?.race_id ?? null;
+  if (id === null || racedToEnd.value === id || !isShownToEnd(scene.value, id)) return;
+  // Now it is computed, and so are both distances.
+  untracked(refreshTeaching).then(() => (racedToEnd.value = id));
 });
 
 /** Press + (1) or − (−1). @param {1 | -1} value @param {number} at_s time of the run in the picture of this page */

@@ -3,6 +3,7 @@ import { html } from "../../../../js/components/elements.js";
 import { count, metres } from "../../../../js/format.js";
 import { racersOf, UNKNOWN } from "../lane-names.js";
 
+/** @import { CardResults } from "../../../../js/types.js" */
 /** @import { Act, Facts } from "./index.js" */
 
 /** @param {Facts} facts */
@@ -23,13 +24,20 @@ function Walker({ classroom, results, isOnItsWay, clock }) {
   `;
 }
 
+/** Among whom they are the best, the median and the last: those on one walk. @param {CardResults | null} results */
+export function racedAmong(results) {
+  const of = results?.race?.of ?? 0;
+  const finished = results?.finished ?? 0;
+  return finished > of ? `of the ${of} of ${finished} robots that walk alike` : `of ${count(of, "robot")}`;
+}
+
 /** Who races: the best, the median and the last of the class, each in the colour of its lane. @param {Facts} facts */
 const Racers = ({ results, colors, clock }) => html`
   <ul class="racers">
     ${racersOf(results).map(({ place, name }, n) => html`
       <li key=${place}><i style=${{ background: colors[n] ?? "transparent" }}></i>${place}: <b>${name}</b></li>
     `)}
-    <li class="dim">${clock ?? `of ${count(results?.race?.of ?? 0, "robot")}`}</li>
+    <li class="dim">${[racedAmong(results), clock].filter(Boolean).join(" · ")}</li>
   </ul>
 `;
 

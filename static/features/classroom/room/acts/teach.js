@@ -8,7 +8,7 @@ import { playhead } from "../../../../js/store.js";
 import { rivalTeacher } from "../lane-names.js";
 import { PressStrip } from "../press-strip.js";
 import { room } from "../room.js";
-import { countsOf, teaching } from "../teaching.js";
+import { countsOf, isTold, teaching } from "../teaching.js";
 
 /** @import { Act, Facts } from "./index.js" */
 /** @import { ActionValue, QTable, TeachingState } from "../../../../js/types.js" */
@@ -20,16 +20,16 @@ const MESSAGE = "hexapods:beside";
 function Teach({ classroom, isRevealed }) {
   const now = /** @type {TeachingState} */ (teaching.value);
   const by = rivalTeacher(classroom.shown.teach);
-  const isTold = isRevealed && now.taught !== null && now.taught.distance_m !== null;
+  const isRaced = isRevealed && now.race_id !== null;
   return html`
-    <p class="robot-name of-class">${isTold ? "Their race" : "Taught by you"}</p>
-    ${isTold
+    <p class="robot-name of-class">${isRaced ? "Their race" : "Taught by you"}</p>
+    ${isRaced
       ? html`<${Tables} now=${now} by=${by} />`
       : html`<${RivalRobot} run_id=${now.rival?.run_id ?? null} by=${by} />`}
     <section class="teach-strip" aria-label="What you press">
       <p class="press-key"><b class="plus">+</b><b class="minus">−</b></p>
       <${PressStrip} presses=${now.presses} first=${0} steps=${now.steps} />
-      ${isTold ? html`<${Outcome} now=${now} by=${by} />` : html`<${Count} now=${now} />`}
+      ${isTold.value ? html`<${Outcome} now=${now} by=${by} />` : html`<${Count} now=${now} />`}
     </section>
   `;
 }
