@@ -57,7 +57,7 @@ test: ## Run what check does, and API, storage, jobs, journeys through the page:
 
 .PHONY: promises
 promises: ## Run what test does not: each promise in short, all of the browser, other Pythons
-	@$(MAKE) --no-print-directory --jobs=3 browser pythons $(DQN_STAMP)
+	@$(MAKE) --no-print-directory --jobs=3 browser proxy pythons $(DQN_STAMP)
 	@$(MAKE) --no-print-directory pytest-promises
 
 .PHONY: lint
@@ -90,6 +90,11 @@ pytest-promises: $(DQN_STAMP)
 .PHONY: browser
 browser: $(DEV_STAMP)
 	$(BIN)/python tests/install_browser.py
+
+# Beside the other checks, too.
+.PHONY: proxy
+proxy: $(DEV_STAMP)
+	$(BIN)/python tests/install_proxy.py
 
 # Before the tests: it mostly installs, and pytest's closing line is to be the last.
 .PHONY: pythons

@@ -47,6 +47,7 @@ from app.api.policy import (
     guard_everything,
 )
 from app.api.problem_pages import ProblemPages
+from app.api.public_path import ForwardedPath, PublicPath
 from app.api.request_headers import DeclaredHeaders
 from app.api.stage_paths import StagePaths
 from app.api.starts import start_kinds, start_routes
@@ -177,11 +178,13 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     contract.install(app, app.state.services.agents, settings, features.classes, providers)
     guards = RouteGuards(settings, app.state.work_slots, features, app.exception_handlers)
     guard_everything(app, guards)
+    _check_public_path(app.routes, settings.public_path)
     # The middleware that is added last runs first.
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(IncompleteBodyGuard)
     app.add_middleware(ProblemPages)
     app.add_middleware(StagePaths, stages=app.state.services.stages)
+    app.add_middleware(PublicPath, path=settings.public_path)
     app.add_middleware(MalformedRequestGuard)
     app.add_middleware(DeclaredHeaders)
     app.add_middleware(SecurityHeaders)
@@ -205,6 +208,22 @@ def _pages_of_features(routes: Sequence[BaseRoute], features: Features) -> list[
             paths.add(path)
         pages += added
     return pages
+
+
+def _check_public_path(routes: Sequence[BaseRoute], public_path: str) -> None:
+    """Check that no page of the server begins with its public path, with which it may be called.
+
+    Raises:
+        InvalidInput: if one does.
+    """
+    contexts = iter_route_contexts(routes)
+    paths = {context.path or getattr(context.original_route, "path", "") for context in contexts}
+    first_names = {path.split("/")[1] for path in paths if path} - {""}
+    if public_path and public_path.split("/")[1] in first_names:
+        raise InvalidInput(
+            f"{PREFIX}PUBLIC_URL may not begin its path with a name of the server's own paths: "
+            f"{', '.join(sorted(first_names))}; choose another, such as /hex/"
+        )
 
 
 def _operations(router: APIRouter) -> Iterator[tuple[str, str]]:
@@ -347,15 +366,15 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
     with listener, open_store(settings, on_lost=lost.set) as store:
         app = create_app(settings, store)
         config = uvicorn.Config(
-            app,
+            ForwardedPath(app, settings.proxy_networks),
             lifespan="on",
             log_config=None,
             log_level="warning",
             access_log=False,
             server_header=False,
             timeout_graceful_shutdown=GRACE_S,
-            # Not None, for which uvicorn would trust every client on this machine.
-            forwarded_allow_ips=settings.proxy_networks,
+            # `ForwardedPath` reads them.
+            proxy_headers=False,
             timeout_keep_alive=KEEP_ALIVE_S,
             http=limited_http(connections),
             # uvloop may not call the sockets' `close`, which counts connections.

@@ -11,6 +11,8 @@ from hexapods.domain.errors import InvalidInput
 
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
 _TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
+PUBLIC_PATH = r"(?=.{2,200}$)(/(?!\.+(/|$))[A-Za-z0-9._~@+-]+)+"
+"""Regular expression of the path of a public URL, without a slash at its end."""
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
 
 
@@ -60,13 +62,22 @@ def check_database_url(variable: str, url: str) -> None:
 
 
 def check_public_url(variable: str, url: str) -> None:
-    """Check the URL at which a proxy offers a server: an origin, without path or user."""
+    """Check the URL at which a proxy offers a server: an origin, or one with a path."""
     try:
         parts = urlsplit(url)
         is_valid = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
     except ValueError:
         is_valid = False
-    if not is_valid or parts.username or parts.path.strip("/") or parts.query or parts.fragment:
+    if not is_valid or parts.username or parts.query or parts.fragment:
         raise InvalidInput(
-            f"{variable} must look like https://hexapods.example, without path, not {url!r}"
+            f"{variable} must look like https://hexapods.example or, below a path, "
+            f"https://school.example/hex/, not {url!r}"
         )
+    path = parts.path.removesuffix("/")
+    if path and not re.fullmatch(PUBLIC_PATH, path):
+        raise InvalidInput(
+            f"{variable} may have a path such as /hex/ or /user/ada/proxy/8000/, of letters, "
+            f"digits and . _ ~ @ + - between single slashes, not {parts.path!r}"
+        )
+    if path and not parts.path.endswith("/"):
+        raise InvalidInput(f"{variable} must end with a slash after its path: {url}/")

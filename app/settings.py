@@ -60,7 +60,8 @@ class Settings:
         token: makes its bearer an operator; None makes everyone one, which is only allowed on
             loopback.
         spectators: `public` lets anyone watch, `token` only clients with the token.
-        public_url: address at which a proxy offers the server, such as `https://hexapods.example`.
+        public_url: address at which a proxy offers the server, such as `https://hexapods.example`,
+            or `https://school.example/hex/` with a path.
         allowed_hosts: further host names by which the server may be called.
         trusted_proxies: addresses and networks of the proxies whose `X-Forwarded-For` and
             `X-Forwarded-Proto` are believed; of other clients these headers are ignored.
@@ -131,6 +132,11 @@ class Settings:
             return None
         parts = urlsplit(self.public_url)
         return f"{parts.scheme}://{parts.netloc.lower()}"
+
+    @property
+    def public_path(self) -> str:
+        """The path of `public_url`, without a slash at its end; "" without one."""
+        return "" if self.public_url is None else urlsplit(self.public_url).path.rstrip("/")
 
     @property
     def proxy_networks(self) -> list[str]:

@@ -1,14 +1,17 @@
 """Session cookies of operators, and of clients whom features identify."""
 
+import re
 from collections.abc import Iterable, Mapping
 
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
+from app.api.public_path import public_path_of
 from app.settings import Settings
 from app.storage.sessions import SESSION_S
 
 NAME = "hexapods_operator"
+_NOT_IN_NAME = re.compile(r"[^A-Za-z0-9]")
 
 
 def is_secure(scope: Scope, settings: Settings) -> bool:
@@ -16,7 +19,7 @@ def is_secure(scope: Scope, settings: Settings) -> bool:
     return scope["scheme"] == "https" or (settings.public_url or "").startswith("https:")
 
 
-_BEGINNINGS = ("hexapods_", "__Host-hexapods_")
+_BEGINNINGS = ("hexapods_", "__Host-hexapods_", "__Secure-hexapods_")
 """Prefixes of the names of all cookies that are read."""
 
 
@@ -44,10 +47,11 @@ def cookies_of(scope: Scope) -> Mapping[str, str]:
 class SessionCookie:
     """The session cookie of a request.
 
-    Browsers send cookies to all ports of a host, so the name contains the port and the path of the
-    stage: two servers on one machine do not overwrite each other's cookie, nor do two stages. A
-    secure cookie has the prefix `__Host-`, which prevents other hosts and plain HTTP from setting
-    it, and is for all paths.
+    Browsers send cookies to all ports of a host, so the name contains the port, the public path and
+    the path of the stage: two servers on one machine do not overwrite each other's cookie, nor do
+    two stages. A secure cookie has the prefix `__Host-`, which prevents other hosts and plain HTTP
+    from setting it, and is for all paths; below a public path it is for that path, so that its
+    prefix is `__Secure-`, which prevents plain HTTP alone.
 
     Attributes:
         name: name of the cookie.
@@ -64,6 +68,7 @@ class SessionCookie:
             name: beginning of the name of the cookie.
         """
         self._is_secure = is_secure
+        self._path = f"{public_path_of(scope)}/"
         self.name = f"{name_of_server(scope, is_secure, name)}{path.replace('/', '_')}"
         self.value = cookies_of(scope).get(self.name, "")
 
@@ -77,12 +82,17 @@ class SessionCookie:
 
     def _header(self, value: str, age_s: int) -> str:
         secure = "; Secure" if self._is_secure else ""
-        return f"{self.name}={value}; Max-Age={age_s}; Path=/; HttpOnly; SameSite=Strict{secure}"
+        return (
+            f"{self.name}={value}; Max-Age={age_s}; Path={self._path}; HttpOnly; "
+            f"SameSite=Strict{secure}"
+        )
 
 
 def name_of_server(scope: Scope, is_secure: bool, name: str) -> str:
-    """Return the prefix of the cookies of a server: it contains the port that the client called."""
+    """Return the beginning of the names of a server's cookies, with the port that was called."""
     port = Headers(scope=scope).get("host", "").rpartition("]")[2].rpartition(":")[2]
     if not (port.isascii() and port.isdigit()):
         port = "443" if is_secure else "80"
-    return f"{'__Host-' if is_secure else ''}{name}_{port}"
+    path = public_path_of(scope)
+    prefix = "" if not is_secure else "__Secure-" if path else "__Host-"
+    return f"{prefix}{name}_{port}{_NOT_IN_NAME.sub('_', path)}"

@@ -9,10 +9,13 @@ from starlette.responses import HTMLResponse, Response
 
 from app.api.compression import CompressedContent
 from app.api.policy import WATCH, api_router, policy
+from app.api.public_path import public_path_of
 from app.api.templates import render as render_template
 
 router = api_router(include_in_schema=False)
 
+_MAX_DOCUMENTS = 4
+"""Documents that are kept, each for a public path."""
 _METHODS = ("get", "post", "put", "patch", "delete")
 
 
@@ -20,12 +23,20 @@ _METHODS = ("get", "post", "put", "patch", "delete")
 @policy(access=WATCH)
 def get_openapi(request: Request) -> Response:
     """Return the OpenAPI document."""
-    state = request.app.state
-    if not hasattr(state, "openapi_document"):
-        document = json.dumps(request.app.openapi(), ensure_ascii=False, separators=(",", ":"))
-        state.openapi_document = CompressedContent(document.encode(), "application/json")
-    content: CompressedContent = state.openapi_document
-    return content.response(request.scope)
+    state, path = request.app.state, public_path_of(request.scope)
+    if not hasattr(state, "openapi_documents"):
+        state.openapi_documents = {}
+    documents: dict[str, CompressedContent] = state.openapi_documents
+    if path not in documents:
+        if len(documents) >= _MAX_DOCUMENTS:
+            documents.clear()
+        # Paths of operations are below the address of the server, here relative to the document's.
+        servers = {"servers": [{"url": path}]} if path else {}
+        document = json.dumps(
+            request.app.openapi() | servers, ensure_ascii=False, separators=(",", ":")
+        )
+        documents[path] = CompressedContent(document.encode(), "application/json")
+    return documents[path].response(request.scope)
 
 
 @router.get("/docs")

@@ -14,10 +14,10 @@ accesses and kinds of work (`work`) of their own, and identities who may use the
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
+from urllib.parse import quote
 
 from fastapi import FastAPI
 from fastapi.routing import APIRoute, APIRouter, iter_route_contexts
-from starlette.datastructures import URL
 from starlette.responses import RedirectResponse
 from starlette.routing import BaseRoute, Match, Mount, Route
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -290,11 +290,23 @@ class _WithoutRoute:
         """Redirect to the path with or without its last slash if it is a route's, as Starlette."""
         if path_of(scope) != "/":
             path = scope["path"]
-            other = {**scope, "path": path.rstrip("/") if path.endswith("/") else f"{path}/"}
-            if any(route.matches(other)[0] is not Match.NONE for route in self._router.routes):
-                await RedirectResponse(str(URL(scope=other)))(scope, receive, send)
+            other = path.rstrip("/") if path.endswith("/") else f"{path}/"
+            routes = self._router.routes
+            if any(r.matches({**scope, "path": other})[0] is not Match.NONE for r in routes):
+                await RedirectResponse(_relative(path, other, scope))(scope, receive, send)
                 return
         await self._router.not_found(scope, receive, send)
+
+
+def _relative(path: str, other: str, scope: Scope) -> str:
+    """Return the address of a path with or without its last slash, relative to this path.
+
+    So it is valid behind a proxy that serves the app under a prefix.
+    """
+    up = "../" * (len(path) - len(path.rstrip("/"))) or "./"
+    query = scope["query_string"].decode("latin-1")
+    name = quote(other.rstrip("/").rpartition("/")[2]) + ("/" if other.endswith("/") else "")
+    return f"{up}{name}{'?' if query else ''}{query}"
 
 
 def guard_everything(app: FastAPI, guards: Guards) -> None:

@@ -15,6 +15,8 @@ from starlette.responses import Response
 from starlette.routing import compile_path
 
 from app.api.descriptions import field_errors
+from app.api.public_path import public_path_of
+from app.api.stage_paths import path_of
 from app.storage.errors import (
     Busy,
     Conflict,
@@ -45,7 +47,7 @@ STATUSES: dict[type[HexapodError], int] = {
 _logger = logging.getLogger(__name__)
 
 _DETAILS = {
-    HTTPStatus.NOT_FOUND: "There is nothing at {path}; /docs lists what there is.",
+    HTTPStatus.NOT_FOUND: "There is nothing at {path}; {docs} lists what there is.",
     HTTPStatus.METHOD_NOT_ALLOWED: "{method} is not possible at {path}; possible: {allow}.",
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The request's body is larger than the limit here.",
     HTTPStatus.BAD_REQUEST: "The request's body could not be read; send valid JSON.",
@@ -131,14 +133,19 @@ async def _http_error(request: Request, error: Exception) -> Response:
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         headers["Allow"] = _allowed(request)
     template = _DETAILS.get(HTTPStatus(error.status_code), str(error.detail))
-    values = {"path": request.url.path, "method": request.method, "allow": headers.get("Allow", "")}
+    values = {
+        "path": request.url.path,
+        "docs": f"{public_path_of(request.scope)}/docs",
+        "method": request.method,
+        "allow": headers.get("Allow", ""),
+    }
     return problem(error.status_code, template.format_map(values), headers=headers)
 
 
 def _allowed(request: Request) -> str:
     """Return the methods of all routes that match the path; a 405 has only those of the first."""
     routes = [route for route in iter_route_contexts(request.app.routes) if route.path]
-    path = request.url.path
+    path = path_of(request.scope)
     # A literal path takes precedence over paths with a parameter.
     literal = [route for route in routes if route.path == path]
     matching = literal or [r for r in routes if r.path and compile_path(r.path)[0].match(path)]

@@ -38,10 +38,11 @@ READ_BEFORE = frozenset(
         "expect",
         "upgrade",
         "x-forwarded-for",
+        "x-forwarded-prefix",
         "x-forwarded-proto",
     }
 )
-"""Names of those that uvicorn and h11 read before the app is called."""
+"""Names of those that uvicorn, `ForwardedPath` and h11 read before the app is called."""
 MAX_BYTES = 8 << 10
 """Longest header that is read, over all lines of the same name."""
 

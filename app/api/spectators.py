@@ -12,6 +12,7 @@ from app.answer import Answer, Count
 from app.api.deps import ServicesDep, StageDep
 from app.api.policy import WATCH, api_router, policy
 from app.api.record_response import RecordResponse
+from app.api.stage_paths import stage_of
 from app.setting_fields import PREFIX
 from app.settings import Settings, is_loopback
 
@@ -67,8 +68,7 @@ def page_address(request: Request, settings: Settings, path: str) -> str:
         path: of the page, with a slash before it.
     """
     address = address_for_others(request, settings) or str(request.base_url)
-    root: str = request.scope.get("root_path", "")
-    return address.rstrip("/").removesuffix(root) + path
+    return address.rstrip("/").removesuffix(stage_of(request.scope).path) + path
 
 
 class Link(NamedTuple):

@@ -11,8 +11,9 @@ from app.viewer.shared_stage import SharedStage
 class StagePaths(HttpMiddleware):
     """Middleware that finds the stage of a request; the page and all routes are below each path.
 
-    The stage's path becomes the request's root path (ASGI), so that routes match what follows it,
-    and addresses that are made from the request begin with it. Stored in the scope's state.
+    The stage's path is added to the request's root path (ASGI), so that routes match what follows
+    it, and addresses that are made from the request begin with it. The stage is stored in the
+    scope's state.
     """
 
     def __init__(self, app: ASGIApp, stages: Sequence[SharedStage]) -> None:
@@ -27,11 +28,11 @@ class StagePaths(HttpMiddleware):
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app."""
-        path: str = scope["path"]
+        path = path_of(scope)
         matching = (stage_ for stage_ in self._stages if path.startswith(f"{stage_.path}/"))
         stage = max(matching, key=lambda shared: len(shared.path), default=self._stages[0])
         scope.setdefault("state", {})["stage"] = stage
-        scope["root_path"] = stage.path
+        scope["root_path"] = scope.get("root_path", "") + stage.path
         await self._app(scope, receive, send)
 
 
@@ -42,6 +43,6 @@ def stage_of(scope: Scope) -> SharedStage:
 
 
 def path_of(scope: Scope) -> str:
-    """Return the path of a request below that of its stage."""
+    """Return the path of a request below that of its stage, or before `StagePaths` the server's."""
     path: str = scope["path"]
     return path.removeprefix(scope.get("root_path", ""))

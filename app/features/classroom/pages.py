@@ -12,6 +12,7 @@ from app.api.deps import Services
 from app.api.pages import page_of
 from app.api.policy import OPERATOR, WATCH, GuardedPage, RoutePolicy, policy
 from app.api.problems import as_sentence, problem
+from app.api.stage_paths import stage_of
 from app.features.classroom.access import BY_CODE
 from app.features.classroom.lesson_sheet import sheet_of
 from app.features.classroom.lessons import Lessons
@@ -72,7 +73,7 @@ def _room(request: Request) -> Response:
         return problem(404, as_sentence(str(error)))
     if not room.is_open:
         return problem(410, f"The room {room.code} has ended; ask for the code of a new one.")
-    if request.scope["root_path"]:  # the dashboard of a stage, below which there is no room
+    if stage_of(request.scope).path:  # the dashboard of a stage, below which there is no room
         raise HTTPException(404)
     if normalized(code) == code:
         return problem(503, "The room is opening; try again.", headers={"Retry-After": "1"})

@@ -193,6 +193,7 @@ def _reading_of(
 @policy(access=OPERATOR, work=ENCODING, takes_file=True)
 def store_robot(
     services: ServicesDep,
+    request: Request,
     body: BodyDep,
     name: Annotated[Name | None, Query()] = None,
     file: Annotated[Name | None, Query(description="name of the file")] = None,
@@ -207,8 +208,9 @@ def store_robot(
         services.store, body, name, file or None, readings=services.of(RobotReadings)
     )
     services.publish_robots()
-    location = {"Location": f"/api/v1/robots/{stored.id}"}
-    return RecordResponse(robot_view(stored), 201 if is_new else 200, location)
+    location = request.url_for("get_robot", robot_id=stored.id).path
+    status = 201 if is_new else 200
+    return RecordResponse(robot_view(stored), status, {"Location": location})
 
 
 @router.get("", summary="List stored robots")
