@@ -187,7 +187,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.add_middleware(PublicPath, path=settings.public_path)
     app.add_middleware(MalformedRequestGuard)
     app.add_middleware(DeclaredHeaders)
-    app.add_middleware(SecurityHeaders)
+    app.add_middleware(SecurityHeaders, frame_ancestors=settings.frame_ancestors)
     return app
 
 
@@ -361,6 +361,12 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
     if settings.public_url is not None and not settings.trusted_proxies:
         _logger.warning(
             "HEXAPODS_TRUSTED_PROXIES names no proxy: all clients of one count as one address"
+        )
+    if settings.frame_ancestors and not settings.has_https:
+        _logger.warning(
+            "HEXAPODS_FRAME_ANCESTORS needs HTTPS: over plain HTTP browsers keep no cookies in a "
+            "frame of another site, so that nobody is operator or joins a room there; let a proxy "
+            "do TLS, and set HEXAPODS_PUBLIC_URL to its https:// address"
         )
     lost = threading.Event()
     with listener, open_store(settings, on_lost=lost.set) as store:

@@ -11,6 +11,7 @@ from hexapods.domain.errors import InvalidInput
 
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
 _TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
+_ORIGIN = re.compile(r"https?://[^/?#@\s]+")
 PUBLIC_PATH = r"(?=.{2,200}$)(/(?!\.+(/|$))[A-Za-z0-9._~@+-]+)+"
 """Regular expression of the path of a public URL, without a slash at its end."""
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
@@ -31,6 +32,25 @@ def check_host_name(variable: str, name: str) -> None:
         raise InvalidInput(
             f"{variable} must be host names separated by commas, without "
             f"scheme, port or star; {name!r} is none"
+        )
+
+
+def check_origin(variable: str, origin: str) -> None:
+    """Check one of the origins of a list, in lower case."""
+    try:
+        parts = urlsplit(origin)
+        is_valid = (
+            _ORIGIN.fullmatch(origin) is not None
+            and _HOST_NAME.fullmatch(parts.hostname or "") is not None
+            and parts.port != 0
+        )
+    except ValueError:
+        is_valid = False
+    if not is_valid:
+        raise InvalidInput(
+            f"{variable} must be origins separated by commas, such as "
+            f"https://portal.school.example or http://localhost:8080, with neither path nor star; "
+            f"{origin!r} is none"
         )
 
 

@@ -24,6 +24,7 @@ from app.setting_checks import (
     check_database_url,
     check_host_name,
     check_network,
+    check_origin,
     check_public_url,
     check_token,
 )
@@ -62,6 +63,7 @@ class Settings:
         spectators: `public` lets anyone watch, `token` only clients with the token.
         public_url: address at which a proxy offers the server, such as `https://hexapods.example`,
             or `https://school.example/hex/` with a path.
+        frame_ancestors: origins whose pages may have the server's in a frame, beside its own.
         allowed_hosts: further host names by which the server may be called.
         trusted_proxies: addresses and networks of the proxies whose `X-Forwarded-For` and
             `X-Forwarded-Proto` are believed; of other clients these headers are ignored.
@@ -85,6 +87,7 @@ class Settings:
     token: str | None = text(None, check_token, is_secret=True)
     spectators: Spectators = choice("public", get_args(Spectators))
     public_url: str | None = text(None, check_public_url)
+    frame_ancestors: tuple[str, ...] = names(check_origin, ignores_case=True)
     allowed_hosts: tuple[str, ...] = names(check_host_name, ignores_case=True)
     trusted_proxies: tuple[str, ...] = names(check_network, ignores_case=True)
     database_url: str | None = text(None, check_database_url, is_secret=True)
@@ -132,6 +135,11 @@ class Settings:
             return None
         parts = urlsplit(self.public_url)
         return f"{parts.scheme}://{parts.netloc.lower()}"
+
+    @property
+    def has_https(self) -> bool:
+        """Whether `public_url` is an HTTPS address."""
+        return (self.public_url or "").startswith("https:")
 
     @property
     def public_path(self) -> str:

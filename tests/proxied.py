@@ -3,9 +3,10 @@
 import socket
 import subprocess
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import pytest
@@ -91,7 +92,12 @@ class Proxy:
 
 @contextmanager
 def proxied(
-    folder: Path, port: int, locations: Sequence[Location], tls: tuple[Path, Path] | None = None
+    folder: Path,
+    port: int,
+    locations: Sequence[Location] = (),
+    pages: Mapping[str, str] = MappingProxyType({}),
+    *,
+    has_tls: bool = False,
 ) -> Iterator[Proxy]:
     """Run an nginx for as long as the block lasts; what is at no location is answered with 418.
 
@@ -99,18 +105,28 @@ def proxied(
         folder: of its files, which is made.
         port: on which it listens.
         locations: what it offers.
-        tls: files of certificate and key; None for plain HTTP.
+        pages: HTML of further pages by their paths.
+        has_tls: whether it speaks HTTPS, by a certificate that it signs itself, or plain HTTP.
     """
     nginx = find_nginx()
     if nginx is None:
         pytest.fail(HOW_TO_GET_NGINX, pytrace=False)
     folder.mkdir()
-    secure = "" if tls is None else f"ssl_certificate {tls[0]}; ssl_certificate_key {tls[1]};"
+    for name, html in pages.items():
+        (folder / f"page-{name.strip('/')}.html").write_text(html)
+    of_pages = [
+        f"""
+        location = {name} {{
+            default_type text/html;
+            alias {folder}/page-{name.strip("/")}.html;
+        }}"""
+        for name in pages
+    ]
     server = f"""
     server {{
-        listen 127.0.0.1:{port}{"" if tls is None else " ssl"};
-        {secure}
-        {"".join(location.block for location in locations)}
+        listen 127.0.0.1:{port}{" ssl" if has_tls else ""};
+        {_certificate(folder) if has_tls else ""}
+        {"".join([*(location.block for location in locations), *of_pages])}
         location / {{ return 418; }}
     }}"""
     config = folder / "nginx.conf"
@@ -123,6 +139,17 @@ def proxied(
     finally:
         process.terminate()
         process.wait(_ENDS_WITHIN_S)
+
+
+def _certificate(folder: Path) -> str:
+    """Make a certificate with its key; return nginx's directives for both."""
+    certificate, key = folder / "certificate.pem", folder / "key.pem"
+    files = ["-out", str(certificate), "-keyout", str(key)]
+    kind = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
+    subject = ["-subj", "/CN=localhost", "-days", "2"]
+    command = ["openssl", "req", "-x509", *kind, *subject, *files]
+    subprocess.run(command, check=True, capture_output=True)
+    return f"ssl_certificate {certificate}; ssl_certificate_key {key};"
 
 
 def _wait_until_open(port: int, process: "subprocess.Popen[bytes]", folder: Path) -> None:

@@ -26,7 +26,8 @@ def test_an_option_goes_before_its_variable(tmp_path: Path) -> None:
         "HEXAPODS_DATA": str(tmp_path),
         "HEXAPODS_TOKEN": TOKEN,
         "HEXAPODS_SPECTATORS": "token",
-        "HEXAPODS_PUBLIC_URL": "https://Hexapods.Example",
+        "HEXAPODS_PUBLIC_URL": "https://Hexapods.Example/Hex/",
+        "HEXAPODS_FRAME_ANCESTORS": "https://Portal.Example, http://localhost:8080",
         "HEXAPODS_ALLOWED_HOSTS": "a.example, B.example,",
         "HEXAPODS_TRUSTED_PROXIES": "127.0.0.1, 10.0.0.0/8, FD00::/8,",
     }
@@ -40,6 +41,8 @@ def test_an_option_goes_before_its_variable(tmp_path: Path) -> None:
     ]
     assert settings.public_host == "hexapods.example"
     assert settings.public_origin == "https://hexapods.example"
+    assert (settings.public_path, settings.has_https) == ("/Hex", True)
+    assert settings.frame_ancestors == ("https://portal.example", "http://localhost:8080")
 
 
 def test_an_empty_variable_is_none() -> None:
@@ -72,6 +75,13 @@ def test_an_empty_variable_is_none() -> None:
         ({"PUBLIC_URL": "https://a.example/h%20x/"}, ["letters, digits"]),
         ({"PUBLIC_URL": "https://a.example/?hex"}, ["https://school.example/hex/"]),
         ({"ALLOWED_HOSTS": "https://a.example"}, ["host names"]),
+        ({"FRAME_ANCESTORS": "portal.example"}, ["https://portal.school.example", "none"]),
+        ({"FRAME_ANCESTORS": "https://a.example/x"}, ["neither path nor star"]),
+        ({"FRAME_ANCESTORS": "https://a.example, *"}, ["origins", "'*'"]),
+        ({"FRAME_ANCESTORS": "https://*.example"}, ["neither path nor star"]),
+        ({"FRAME_ANCESTORS": "https://a.example;x"}, ["a.example;x"]),
+        ({"FRAME_ANCESTORS": "https://a.example:0"}, ["origins"]),
+        ({"FRAME_ANCESTORS": "'self'"}, ["origins"]),
         ({"ALLOWED_HOSTS": "*"}, ["host names"]),
         ({"TRUSTED_PROXIES": "*"}, ["TRUSTED_PROXIES", "172.16.0.0/12"]),
         ({"TRUSTED_PROXIES": "127.0.0.1, proxy.example"}, ["proxy.example"]),

@@ -8,7 +8,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.active_features import Features
-from app.api.cookies import SessionCookie, is_secure
+from app.api.cookies import SessionCookie, cookie_rules
 from app.api.identity import Identity, run_ids_of
 from app.api.policy import WATCH_REPLAY, WATCH_RUN, WATCH_STAGE, policy_of
 from app.api.problems import problem
@@ -40,7 +40,7 @@ class TokenGuard:
     """
 
     def __init__(self, app: ASGIApp, settings: Settings, features: Features) -> None:
-        """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`.
+        """Wrap an app, inside `StagePaths`; of the settings it uses those of cookies.
 
         Args:
             app: the wrapped app.
@@ -103,11 +103,9 @@ class TokenGuard:
             return as_spectator
         return identity.refusal(scope, access, as_spectator)
 
-    def _is_secure(self, scope: Scope) -> bool:
-        return is_secure(scope, self._settings)
-
     def _cookie(self, scope: Scope) -> SessionCookie:
-        return SessionCookie(scope, self._is_secure(scope), stage_of(scope).session_path)
+        rules = cookie_rules(scope, self._settings)
+        return SessionCookie(scope, rules, stage_of(scope).session_path)
 
     async def _open_session(self, scope: Scope, roles: Roles) -> Response:
         """Open a session for the token of `?token=…`, and redirect to the address without it."""

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from starlette.datastructures import Headers
 from starlette.types import Scope
@@ -14,9 +15,30 @@ NAME = "hexapods_operator"
 _NOT_IN_NAME = re.compile(r"[^A-Za-z0-9]")
 
 
-def is_secure(scope: Scope, settings: Settings) -> bool:
-    """Whether browsers reach the server over HTTPS, by itself or by the proxy that offers it."""
-    return scope["scheme"] == "https" or (settings.public_url or "").startswith("https:")
+class CookieRules(NamedTuple):
+    """When browsers store and send a cookie.
+
+    Attributes:
+        is_secure: whether browsers reach the server over HTTPS.
+        is_framed: whether pages of other sites may have the server's in a frame, where its cookies
+            are a third party's.
+    """
+
+    is_secure: bool
+    is_framed: bool = False
+
+    @property
+    def attributes(self) -> str:
+        """The attributes of a `Set-Cookie` header: in frames, a cookie for each site around it."""
+        if not self.is_secure:
+            return "SameSite=Strict"  # without `Secure`, browsers refuse `SameSite=None`
+        return "SameSite=None; Secure; Partitioned" if self.is_framed else "SameSite=Strict; Secure"
+
+
+def cookie_rules(scope: Scope, settings: Settings) -> CookieRules:
+    """Return the rules of the cookies for a client, who calls the server itself or by its proxy."""
+    is_secure = scope["scheme"] == "https" or settings.has_https
+    return CookieRules(is_secure, is_framed=bool(settings.frame_ancestors))
 
 
 _BEGINNINGS = ("hexapods_", "__Host-hexapods_", "__Secure-hexapods_")
@@ -58,18 +80,18 @@ class SessionCookie:
         value: session id that the client sent; "" without a cookie.
     """
 
-    def __init__(self, scope: Scope, is_secure: bool, path: str, name: str = NAME) -> None:
+    def __init__(self, scope: Scope, rules: CookieRules, path: str, name: str = NAME) -> None:
         """Read the session cookie of a request.
 
         Args:
             scope: ASGI scope of the request.
-            is_secure: whether browsers use HTTPS.
+            rules: when browsers store and send it.
             path: path of the stage, or of another page with a cookie of its own.
             name: beginning of the name of the cookie.
         """
-        self._is_secure = is_secure
+        self._attributes = rules.attributes
         self._path = f"{public_path_of(scope)}/"
-        self.name = f"{name_of_server(scope, is_secure, name)}{path.replace('/', '_')}"
+        self.name = f"{name_of_server(scope, rules, name)}{path.replace('/', '_')}"
         self.value = cookies_of(scope).get(self.name, "")
 
     def set_header(self, session_id: str, age_s: int = SESSION_S) -> str:
@@ -81,18 +103,16 @@ class SessionCookie:
         return self._header("", 0)
 
     def _header(self, value: str, age_s: int) -> str:
-        secure = "; Secure" if self._is_secure else ""
         return (
-            f"{self.name}={value}; Max-Age={age_s}; Path={self._path}; HttpOnly; "
-            f"SameSite=Strict{secure}"
+            f"{self.name}={value}; Max-Age={age_s}; Path={self._path}; HttpOnly; {self._attributes}"
         )
 
 
-def name_of_server(scope: Scope, is_secure: bool, name: str) -> str:
+def name_of_server(scope: Scope, rules: CookieRules, name: str) -> str:
     """Return the beginning of the names of a server's cookies, with the port that was called."""
     port = Headers(scope=scope).get("host", "").rpartition("]")[2].rpartition(":")[2]
     if not (port.isascii() and port.isdigit()):
-        port = "443" if is_secure else "80"
+        port = "443" if rules.is_secure else "80"
     path = public_path_of(scope)
-    prefix = "" if not is_secure else "__Secure-" if path else "__Host-"
+    prefix = "" if not rules.is_secure else "__Secure-" if path else "__Host-"
     return f"{prefix}{name}_{port}{_NOT_IN_NAME.sub('_', path)}"

@@ -41,11 +41,12 @@ class HostGuard(HttpMiddleware):
     """Middleware that refuses requests with a foreign Host or Origin."""
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        """Wrap an app; the settings list the allowed hosts and the public URL.
+        """Wrap an app; the settings list allowed hosts, the public URL, and who frames pages.
 
         Loopback names and IP literals are always allowed: DNS rebinding cannot use them.
         """
         super().__init__(app)
+        self._is_framed = bool(settings.frame_ancestors)
         self._names = {*settings.allowed_hosts, settings.public_host} - {None}
         allowed_origins = [
             f"{scheme}://{name}" for name in settings.allowed_hosts for scheme in _STANDARD_PORTS
@@ -69,12 +70,24 @@ class HostGuard(HttpMiddleware):
         if origins and not (len(origins) == 1 and self._is_own_page(origins[0], host)):
             return _FOREIGN_PAGE
         if not _OWN_SITES.issuperset(headers.getlist("sec-fetch-site")) and not (
-            method in _SAFE_METHODS and _is_navigation(headers)
+            method in _SAFE_METHODS and self._is_navigation(headers)
         ):
             return _FOREIGN_PAGE
         if method not in _SAFE_METHODS and _is_form_request(headers):
             return _FORM_REQUEST
         return None
+
+    def _is_navigation(self, headers: Headers) -> bool:
+        """Whether the request opens a page, such as by a followed link, and is no fetch.
+
+        A page in a frame is one only where other origins may frame pages; which, its policy says.
+        """
+        destinations = headers.getlist("sec-fetch-dest")
+        return (
+            headers.getlist("sec-fetch-mode") == ["navigate"]
+            and (destinations == ["document"] or (self._is_framed and destinations == ["iframe"]))
+            and "origin" not in headers
+        )
 
     def _is_own_host(self, name: str) -> bool:
         return name in self._names or _is_local_name(name) or _is_ip_address(name)
@@ -84,15 +97,6 @@ class HostGuard(HttpMiddleware):
         if page is None:
             return False
         return page in self._origins or page[1:] == (host[0], host[1] or _STANDARD_PORTS[page[0]])
-
-
-def _is_navigation(headers: Headers) -> bool:
-    """Whether the request is a top-level navigation, such as a followed link, not a fetch."""
-    return (
-        headers.getlist("sec-fetch-mode") == ["navigate"]
-        and headers.getlist("sec-fetch-dest") == ["document"]
-        and "origin" not in headers
-    )
 
 
 def _is_form_request(headers: Headers) -> bool:

@@ -1,13 +1,16 @@
 """The base of middleware that concerns HTTP alone, and the security headers of every response."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+_OWN_FRAMES = "frame-ancestors 'self'"
+"""Directive of all policies: whose pages may have a page in a frame."""
 _CONTENT_POLICY = (
     "default-src 'none'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-    "base-uri 'none'; form-action 'self'; frame-ancestors 'self'"
+    f"base-uri 'none'; form-action 'self'; {_OWN_FRAMES}"
 )
 
 
@@ -38,7 +41,20 @@ class HttpMiddleware(ABC):
 
 
 class SecurityHeaders(HttpMiddleware):
-    """Middleware that adds security headers, unless the response sets its own."""
+    """Middleware that adds security headers, unless the response sets its own.
+
+    In every policy it adds the origins that may frame pages to those of the server's own pages.
+    """
+
+    def __init__(self, app: ASGIApp, frame_ancestors: Sequence[str] = ()) -> None:
+        """Wrap an app.
+
+        Args:
+            app: the wrapped app.
+            frame_ancestors: origins whose pages may have pages of the app in a frame.
+        """
+        super().__init__(app)
+        self._frames = " ".join([_OWN_FRAMES, *frame_ancestors])
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, and add the headers to its response."""
@@ -47,12 +63,15 @@ class SecurityHeaders(HttpMiddleware):
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 headers.setdefault("X-Content-Type-Options", "nosniff")
-                if "Content-Security-Policy" not in headers:
-                    # A policy has `frame-ancestors`, before which browsers ignore this.
+                if "Content-Security-Policy" not in headers and self._frames == _OWN_FRAMES:
+                    # Browsers ignore it where a policy has `frame-ancestors`.
                     headers.setdefault("X-Frame-Options", "SAMEORIGIN")
                 headers.setdefault("Referrer-Policy", "same-origin")
                 headers.setdefault("Cross-Origin-Resource-Policy", "same-origin")
-                headers.setdefault("Content-Security-Policy", _CONTENT_POLICY)
+                content_policy = headers.setdefault("Content-Security-Policy", _CONTENT_POLICY)
+                if self._frames != _OWN_FRAMES:
+                    widened = content_policy.replace(_OWN_FRAMES, self._frames)
+                    headers["Content-Security-Policy"] = widened
             await send(message)
 
         await self._app(scope, receive, add)

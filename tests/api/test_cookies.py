@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from app.api.cookies import SessionCookie, cookies_of, kept_cookies
+from app.api.cookies import CookieRules, SessionCookie, cookies_of, kept_cookies
 
 
 def scope(*lines: str, host: str = "127.0.0.1:8000") -> dict[str, Any]:
@@ -31,6 +31,6 @@ def test_values_of_cookies_are_not_decoded() -> None:
 
 def test_a_session_is_that_of_the_port_the_client_has_called() -> None:
     request_scope = scope("hexapods_operator_8000=x; __Host-hexapods_operator_443=y")
-    assert SessionCookie(request_scope, is_secure=False, path="").value == "x"
+    assert SessionCookie(request_scope, CookieRules(is_secure=False), path="").value == "x"
     public = scope("hexapods_operator_8000=x; __Host-hexapods_operator_443=y", host="robots.test")
-    assert SessionCookie(public, is_secure=True, path="").value == "y"
+    assert SessionCookie(public, CookieRules(is_secure=True), path="").value == "y"

@@ -17,7 +17,13 @@ from fastapi import Depends, Path
 from starlette.requests import Request
 from starlette.types import ASGIApp, Scope
 
-from app.api.cookies import SessionCookie, cookies_of, is_secure, name_of_server
+from app.api.cookies import (
+    CookieRules,
+    SessionCookie,
+    cookie_rules,
+    cookies_of,
+    name_of_server,
+)
 from app.api.deps import Services
 from app.api.identity import Identity
 from app.api.policy import ANY_PAGE, QUESTION, WATCH_RUN, WATCH_STAGE, Access
@@ -190,7 +196,7 @@ class RoomAccess:
     def identify(self, scope: Scope) -> Participant | None:
         """Return which participants of open rooms a client is, by its cookies."""
         seats = []
-        for code, key in _room_keys(scope, is_secure(scope, self._settings)):
+        for code, key in _room_keys(scope, cookie_rules(scope, self._settings)):
             row = self._rooms.seat(code, key)
             with suppress(NotFound):  # deleted meanwhile
                 if row is not None and self._rooms.get(code).is_open:
@@ -237,14 +243,14 @@ def work_of_card(scope: Scope) -> Work:
     return services.of(WhatIfs).work
 
 
-def room_cookie(scope: Scope, code: str, *, is_secure: bool) -> SessionCookie:
+def room_cookie(scope: Scope, code: str, rules: CookieRules) -> SessionCookie:
     """Return the cookie of a participant of a room."""
-    return SessionCookie(scope, is_secure, f"/{code}", ROOM_NAME)
+    return SessionCookie(scope, rules, f"/{code}", ROOM_NAME)
 
 
-def _room_keys(scope: Scope, is_secure: bool) -> Iterator[tuple[str, str]]:
+def _room_keys(scope: Scope, rules: CookieRules) -> Iterator[tuple[str, str]]:
     """Yield the codes of the rooms whose cookies a request has, each with the participant's key."""
-    beginning = f"{name_of_server(scope, is_secure, ROOM_NAME)}_"
+    beginning = f"{name_of_server(scope, rules, ROOM_NAME)}_"
     for name, key in cookies_of(scope).items():
         code = name.removeprefix(beginning)
         if code != name and _CODE.fullmatch(code) is not None:

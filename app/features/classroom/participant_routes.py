@@ -7,7 +7,7 @@ from starlette.responses import Response
 
 from app.api.answers import ComparisonView
 from app.api.contract import LOCATION, TEXT, Schema, answers
-from app.api.cookies import SessionCookie, is_secure
+from app.api.cookies import SessionCookie, cookie_rules
 from app.api.deps import IdempotencyKeyHeader, Services, ServicesDep
 from app.api.identity import charged_client
 from app.api.policy import api_router, policy
@@ -109,8 +109,8 @@ def leave_room(
 
 
 def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
-    secure = is_secure(request.scope, services.settings)
-    return room_cookie(request.scope, normalized(code), is_secure=secure)
+    rules = cookie_rules(request.scope, services.settings)
+    return room_cookie(request.scope, normalized(code), rules)
 
 
 @router.post("/{code}/predictions", status_code=201, summary="Answer a card")

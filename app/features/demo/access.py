@@ -11,7 +11,7 @@ from urllib.parse import parse_qsl
 
 from starlette.types import ASGIApp, Scope
 
-from app.api.cookies import SessionCookie, is_secure
+from app.api.cookies import SessionCookie, cookie_rules
 from app.api.policy import OWN_RUNS, START, Access
 from app.api.problems import problem
 from app.api.stage_paths import stage_of
@@ -87,8 +87,7 @@ class VisitorAccess:
         """Return the visitor; None where nobody needs a token, as all are operators there."""
         if not stage_of(scope).roles.needs_token:
             return None
-        secure = is_secure(scope, self._settings)
-        cookie = SessionCookie(scope, secure, "", VISITOR_NAME)
+        cookie = SessionCookie(scope, cookie_rules(scope, self._settings), "", VISITOR_NAME)
         # Another stage, such as that of a class, is no place of visitors.
         return Visitor(cookie, self._visitors, is_at_home=not stage_of(scope).path)
 

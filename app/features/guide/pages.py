@@ -45,6 +45,8 @@ CONTENTS = (
             "python",
             "operations",
             "hosting",
+            "behind-a-proxy",
+            "frames",
         ),
     ),
     (
