@@ -264,7 +264,8 @@ def _add_security(
             "in": "cookie",
             "name": f"{NAME}_{settings.port}",
             "description": "set by opening the page once with ?token=… in its address; the name "
-            "ends with the port of that address, and begins with __Host- over HTTPS",
+            "ends with the port and path of that address, and begins with __Host- over HTTPS, or "
+            "__Secure- below a path",
         },
         **dict(provider.scheme for provider in providers),
     }

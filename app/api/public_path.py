@@ -6,6 +6,7 @@ routes match what follows it, and addresses made from the request begin with it.
 """
 
 import re
+from typing import Any
 
 from starlette.responses import RedirectResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -18,26 +19,32 @@ _HEADER = b"x-forwarded-prefix"
 _FORWARDED = "forwarded_path"
 
 
-class ForwardedPath(ProxyHeadersMiddleware):
-    """Middleware that also reads `X-Forwarded-Prefix`, of trusted proxies alone.
+class ForwardedPath:
+    """Middleware that believes the headers of trusted proxies, `X-Forwarded-Prefix` among them.
 
     Proxies that strip a path say by it which, such as Traefik and jupyter-server-proxy. A value
     that is no path as `HEXAPODS_PUBLIC_URL` may have is ignored.
     """
 
     def __init__(self, app: ASGIApp, trusted_hosts: list[str]) -> None:
-        """Wrap an app; to be the outermost middleware, since it compares the peer's address."""
-        super().__init__(app, trusted_hosts)  # type: ignore[arg-type]  # its types are uvicorn's
+        """Wrap an app.
 
-    async def __call__(self, scope, receive, send) -> None:  # type: ignore[no-untyped-def]
-        """Store the path in the scope's state, and call the app."""
+        Args:
+            app: the wrapped app.
+            trusted_hosts: addresses and networks of the proxies.
+        """
+        untyped: Any = app  # uvicorn has types of its own for the same interface
+        self._forwarded: Any = ProxyHeadersMiddleware(untyped, trusted_hosts)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Store the path in the scope's state, and call the app as for the proxy's client."""
         client = scope.get("client")
-        if scope["type"] == "http" and client and client[0] in self.trusted_hosts:
+        if scope["type"] == "http" and client and client[0] in self._forwarded.trusted_hosts:
             values = [value for name, value in scope["headers"] if name == _HEADER]
             path = values[0].decode("latin-1").rstrip("/") if len(values) == 1 else ""
             if re.fullmatch(PUBLIC_PATH, path):
                 scope["state"] = {**scope.get("state", {}), _FORWARDED: path}
-        await super().__call__(scope, receive, send)
+        await self._forwarded(scope, receive, send)
 
 
 class PublicPath(HttpMiddleware):

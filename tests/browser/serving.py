@@ -17,7 +17,7 @@ import httpx2
 from app.storage.server_lock import read_address_file
 from tests.forked import start_hexapods
 
-_ADDRESS = re.compile(r"is at (http://\S+)")
+_ADDRESS = re.compile(r"is at (https?://\S+)")
 _STARTS_WITHIN_S = 60
 _RUNS_WITHIN_S = 60
 _ENDS_WITHIN_S = 20

@@ -61,7 +61,8 @@ class Site:
     def check(self) -> None:
         """Check that nothing was asked for outside the path."""
         assert self.strays == []
-        assert [path for path in self._proxy.requested() if not path.startswith(self.path)] == []
+        requested = self._proxy.requested()
+        assert [path for path in requested if not self.has(f"{self.origin}{path}")] == []
 
     @contextmanager
     def api(self) -> Iterator[httpx2.Client]:
@@ -72,8 +73,8 @@ class Site:
             yield client
 
     def has(self, address: str) -> bool:
-        """Whether an address is below the path."""
-        return address.startswith(self.address)
+        """Whether an address is the path, or below it."""
+        return f"{address}/".startswith(self.address)
 
 
 @contextmanager
@@ -90,9 +91,10 @@ def site(
         is_stripped: whether the proxy removes the path from requests.
     """
     port = free_port()
-    public_url = {"public_url": f"http://localhost:{port}{path}"} if is_told else {}
-    settings = {"trusted_proxies": "127.0.0.1", **public_url}
-    with serving(folder / "data", token=TOKEN, **settings) as server:
+    public_url = f"http://localhost:{port}{path}" if is_told else ""
+    proxies = "127.0.0.1"
+    data = folder / "data"
+    with serving(data, token=TOKEN, public_url=public_url, trusted_proxies=proxies) as server:
         location = Location(path, server.address, is_stripped, forwards_path=not is_told)
         with proxied(folder / "proxy", port, [location]) as proxy:
             yield Site(server, proxy, path)
