@@ -154,7 +154,7 @@ def _linked(tokens: list["Token"], name: str) -> list["Token"]:
         href = str(token.attrGet("href") or "")
         page = _PAGE.fullmatch(href)
         if page and (page["name"] or name) in _NAMES:
-            token.attrSet("href", f"guide/{page['name'] or name}{page['part'] or ''}")
+            token.attrSet("href", f"{page['name'] or name}{page['part'] or ''}")
         elif not _ELSEWHERE.fullmatch(href):  # a file of the repository
             token.attrs.pop("href", None)
     return [token for token in tokens if token.type != "image"]

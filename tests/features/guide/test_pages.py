@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from urllib.parse import urljoin
 
 from app.features.guide.pages import CONTENTS
 from hexapods import assets
@@ -29,15 +30,26 @@ def test_links_lead_to_pages_of_the_server_or_elsewhere_and_to_no_file_that_it_l
         assert [
             href
             for href in re.findall(r'<a [^>]*href="([^"]*)"', main)
-            if not re.fullmatch(r"https?://.+|guide/[\w-]+(#[\w-]+)?", href)
+            if not re.fullmatch(r"https?://.+|[\w-]+(#[\w-]+)?", href)
         ] == [], name
+
+
+def test_links_of_the_contents_lead_to_pages(shared: Callable[..., Api]) -> None:
+    """As a browser follows them: relative to the page, since its policy forbids another base."""
+    client = shared().client
+    page = client.get("/guide/page")
+    assert "<base" not in page.text
+    hrefs = re.findall(r'href="([^"]+)"', page.text.partition("<main>")[0])
+    assert {"../", "../docs", "tutorial"} <= {*hrefs}
+    for href in hrefs:
+        assert client.get(urljoin("/guide/page", href)).status_code == 200, href
 
 
 def test_links_to_a_part_of_a_page_find_it(shared: Callable[..., Api]) -> None:
     client = shared().client
     for name in (page_name for _, names in CONTENTS for page_name in names):
         for other, anchor in re.findall(
-            r'href="guide/([\w-]+)#([\w-]+)"', client.get(f"/guide/{name}").text
+            r'href="([\w-]+)#([\w-]+)"', client.get(f"/guide/{name}").text
         ):
             assert f'id="{anchor}"' in client.get(f"/guide/{other}").text, (name, other, anchor)
 
