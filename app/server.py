@@ -45,6 +45,7 @@ from app.api.policy import (
     RoutePolicy,
     api_router,
     guard_everything,
+    operation_id,
 )
 from app.api.problem_pages import ProblemPages
 from app.api.public_path import ForwardedPath, PublicPath
@@ -144,6 +145,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         openapi_url=None,
         docs_url=None,
         redoc_url=None,
+        generate_unique_id_function=operation_id,
     )
     app.state.services = Services(
         settings=settings,

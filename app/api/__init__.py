@@ -8,7 +8,8 @@
   features add), `recorded_answers`, `option_answers` (from `option_texts` and `robot_options`),
   `event_answers`, `curves`, `problems` (RFC 9457), `templates` (web pages), `compression`;
   `budgeted_chunks` (of what slow clients read).
-- `contract` completes the OpenAPI document; `deps` injects services and the stage.
+- `contract` completes the OpenAPI document, by `shared_schemas` where bodies have the same;
+  `deps` injects services and the stage.
 - `policy` says of each route who may use it and what it costs, by kinds of `work`. `guards`
   run when a route was matched, before its body is read: `auth` (roles, and those whom features know
   by `identity`), `rate_limit`, `memory_limit`, `concurrency_limit`.

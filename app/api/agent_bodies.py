@@ -62,13 +62,9 @@ def _race_or_branch(value: Any) -> str:
 
 
 def _practice_body(agent: str) -> type[PracticeBody]:
-    fields: dict[str, Any] = {
-        name: (field_of([setting]), ... if setting.default is REQUIRED else setting.default)
-        for name, setting in agent_settings(agent).items()
-    }
-    settings = settings_body(f"{_camel_case(agent)}Settings", fields)
+    settings = _settings_of(agent, is_complete=True)
     practice_fields = record_fields(TrainingConfig, {*WALK, "world", "seed", "agent", "settings"})
-    name = f"{_camel_case(agent)}Practice"
+    name = f"{camel_case(agent)}Practice"
     return create_model(name, __base__=PracticeBody, settings=settings, **practice_fields)
 
 
@@ -82,7 +78,7 @@ def settings_body(name: str, fields: Mapping[str, Any]) -> tuple[type[SettingsBo
 def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBody]:
     agent_field = (_literal(agent), agent if agent == TrainingConfig.agent else ...)
     model: type[TrainingBody] = create_model(
-        f"{_camel_case(agent)}Training",
+        f"{camel_case(agent)}Training",
         __base__=(practice, TrainingBody),  # type: ignore[arg-type]
         __doc__=TrainingBody.__doc__,
         agent=agent_field,
@@ -94,13 +90,12 @@ def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBod
 def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
     description = Field(description=VALID["training"])
     training: dict[str, Any] = {"training": (Annotated[practice | None, description], None)}
-    name = f"{_camel_case(agent)}LaneSettings"
     return create_model(
-        f"{_camel_case(agent)}Lane",
+        f"{camel_case(agent)}Lane",
         __base__=LaneBody,
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
-        settings=settings_body(name, _optional_settings(agent)),
+        settings=_settings_of(agent, is_complete=False),
         **record_fields(LaneConfig, {"agent", "settings"}, optional=LANE_FIELDS),
         **(training if learns(agent) else {}),
     )
@@ -114,18 +109,31 @@ def with_settings_of(agent: str, base: type[Body], suffix: str) -> type[Body]:
         base: the body without settings.
         suffix: end of the model's name, which begins with the agent's.
     """
-    name = f"{_camel_case(agent)}{suffix}"
-    settings = settings_body(f"{name}Settings", _optional_settings(agent))
+    settings = _settings_of(agent, is_complete=False)
     fields: dict[str, Any] = {"agent": (_literal(agent), ...), "settings": settings}
+    name = f"{camel_case(agent)}{suffix}"
     return create_model(name, __base__=base, __doc__=base.__doc__, **fields)
 
 
-def _optional_settings(agent: str) -> dict[str, Any]:
-    """Return the fields of an agent's settings; none is required, as a training may have them."""
-    return {
-        name: (field_of([setting]), None if setting.default is REQUIRED else setting.default)
-        for name, setting in agent_settings(agent).items()
+@cache
+def _settings_of(agent: str, *, is_complete: bool) -> tuple[type[SettingsBody], Any]:
+    """Return the type and the default of the settings of an agent.
+
+    Args:
+        agent: name of the agent.
+        is_complete: whether settings without a default are required; else a training may have them.
+            The type is the same for an agent that has none of these.
+    """
+    settings = agent_settings(agent)
+    requires = any(setting.default is REQUIRED for setting in settings.values())
+    if not requires and not is_complete:
+        return _settings_of(agent, is_complete=True)
+    missing = ... if is_complete else None
+    fields: dict[str, Any] = {
+        name: (field_of([setting]), missing if setting.default is REQUIRED else setting.default)
+        for name, setting in settings.items()
     }
+    return settings_body(f"{camel_case(agent)}{'' if is_complete else 'Lane'}Settings", fields)
 
 
 def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
@@ -171,5 +179,6 @@ def _literal(agent: str) -> Any:
     return Literal[agent]
 
 
-def _camel_case(agent: str) -> str:
-    return "".join(word.capitalize() for word in re.split(r"[\W_]+", agent))
+def camel_case(name: str) -> str:
+    """Return a name for a model: `QLearning` of `q-learning`."""
+    return "".join(word.capitalize() for word in re.split(r"[\W_]+", name))

@@ -17,6 +17,7 @@ from app.api.event_answers import event_bodies
 from app.api.identity import IdentityProvider
 from app.api.policy import Access, RoutePolicy, policies
 from app.api.problems import MEDIA_TYPE
+from app.api.shared_schemas import name_schemas, share, shared_schemas
 from app.feature import Feature
 from app.settings import Settings
 
@@ -127,8 +128,9 @@ def sends_events(name: str) -> Schema:
     Args:
         name: of the schema that has the JSON of each event's data, by the event's name.
     """
-    data = {"contentMediaType": "application/json", "description": f"a property of `{name}`"}
-    content = {"text/event-stream": {"itemSchema": {"properties": {"data": data}}}}
+    # OpenAPI 3.1 has no schema of one event, and few generators read 3.2, which has.
+    about = f"events, of which each has the JSON of the property of `{name}` by its name as data"
+    content = {"text/event-stream": {"schema": {**TEXT, "description": about}}}
     return {"responses": {"200": {"content": content}}}
 
 
@@ -196,6 +198,8 @@ def _completed(
         problems = {str(s): {"$ref": f"#/components/responses/{_PROBLEMS[s][0]}"} for s in statuses}
         operation["responses"] = successes | problems
     _link_runs(schema)
+    share(schema, shared_schemas())
+    name_schemas(schemas)
     return schema
 
 

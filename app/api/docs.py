@@ -75,7 +75,12 @@ def _operation(
         "summary": operation.get("summary", ""),
         "description": operation.get("description", ""),
         "fields": [
-            (name, place, _type(kind, schema), about.get("description", ""))
+            (
+                name,
+                place,
+                _type(kind, schema),
+                {**_resolved(kind, schema), **about}.get("description", ""),
+            )
             for name, place, kind, about in rows
         ],
         "example": _example(verb, path, bool(body), base),
@@ -104,10 +109,11 @@ def _resolved(kind: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str
 
 
 def _type(kind: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
+    kind = {**_resolved(kind, schema), **kind}
     options = kind.get("anyOf") or kind.get("oneOf")
     if options:
         return " or ".join(_type(option, schema) for option in options)
-    if "$ref" in kind:
+    if kind.get("type") == "object" and "properties" in kind:
         return "{" + ", ".join(name for name, _ in _fields(kind, schema)) + "}"
     if "const" in kind or "enum" in kind:
         return " or ".join(map(str, kind.get("enum", [kind.get("const")])))

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, is_dataclass
 from typing import Annotated, Any, Optional, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import (
@@ -190,9 +190,21 @@ def record_fields(
         else:
             shape = _shape(field.name, hint)
         if field.name in optional:
-            shape, default = Optional[shape], None  # noqa: UP045  # of a type made here
-        types[field.name] = (Annotated[shape, Field(description=VALID.get(field.name))], default)
+            default = None
+            if type(None) not in get_args(hint):
+                shape = Optional[shape]  # noqa: UP045  # of a type made here
+        about = Field(
+            description=VALID.get(field.name), json_schema_extra=_default_in_json(hint, default)
+        )
+        types[field.name] = (Annotated[shape, about], default)
     return types
+
+
+def _default_in_json(hint: Any, default: Any) -> dict[str, Any] | None:
+    """Return a default as requests have it, for one that is a record; None for plain values."""
+    if not is_dataclass(default):
+        return None
+    return {"default": TypeAdapter(hint).dump_python(default, mode="json")}
 
 
 def _shape(name: str, annotation: Any) -> Any:

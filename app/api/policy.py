@@ -273,8 +273,19 @@ def _policy_for(route: GuardedRoute | GuardedPage, scope: Scope) -> RoutePolicy:
 
 
 def api_router(**options: Any) -> APIRouter:
-    """Return a router whose routes are behind the guards; arguments as of `APIRouter`."""
-    return APIRouter(route_class=GuardedRoute, **options)
+    """Return a router whose routes are behind the guards; arguments as of `APIRouter`.
+
+    The name of a route is its operation id, such as `start_race`.
+    """
+    return APIRouter(route_class=GuardedRoute, generate_unique_id_function=operation_id, **options)
+
+
+def operation_id(route: APIRoute) -> str:
+    """Return the operation id of a route: its name, a verb and a noun, which is that of no other.
+
+    Generators of clients make the names of functions from it.
+    """
+    return route.name
 
 
 class _WithoutRoute:

@@ -175,7 +175,7 @@ def get_curves(services: ServicesDep, ids: RunIdsQuery) -> RecordResponse[Curves
 
 @router.get("/{run_id}", summary="Get a run of any kind")
 @policy(access=WATCH_RUN, depends_on_state=False)
-def get_any_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[ListedRunView]:
+def get_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[ListedRunView]:
     """Return a run of any kind by its id."""
     return RecordResponse(services.jobs.view(services.store.find(run_id)))
 
@@ -207,7 +207,7 @@ def restore_run(services: ServicesDep, run_id: RunPath) -> RecordResponse[Listed
     responses=answers(202, headers=LOCATION),
 )
 @policy(access=START, starts=True)
-def run_again(
+def repeat_run(
     services: ServicesDep, request: Request, run_id: RunPath, start_request: StartRequestDep
 ) -> Response:
     """Queue a copy of a run, with its seed and tables, without the changes made while it ran.
@@ -255,7 +255,7 @@ def run_routes(
         "/{run_id}",
         status_code=204,
         summary=phrase("Delete {} that has ended", kind),
-        name=f"del_{kind}",
+        name=f"delete_{kind}",
     )
     @policy(access=changed_by)
     def delete_run(services: ServicesDep, run_id: RunPath) -> None:

@@ -131,7 +131,7 @@ def _best_known_m(run: Run) -> float | None:
     responses=answers(200, {"text/csv": TEXT, tables.MEDIA_TYPE: BINARY}),
 )
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_table(
+def get_q_table(
     services: ServicesDep,
     request: Request,
     run_id: RunPath,

@@ -75,7 +75,8 @@ def json_schema(kind: type[Disturbance]) -> Schema:
     }
 
 
-def _any_kind() -> Schema:
+def any_kind_schema() -> Schema:
+    """Return the JSON schema of a disturbance of any kind, in requests."""
     return {"anyOf": [json_schema(kind) for kind in KINDS.values()]}
 
 
@@ -94,7 +95,7 @@ DISTURBANCE_SCHEMA: Schema = {
 }
 """JSON schema of a disturbance in answers."""
 AnyDisturbance = Annotated[
-    Disturbance, JsonForm(disturbance_from, as_mapping, _any_kind, DISTURBANCE_SCHEMA)
+    Disturbance, JsonForm(disturbance_from, as_mapping, any_kind_schema, DISTURBANCE_SCHEMA)
 ]
 """A disturbance of any kind."""
 

@@ -190,13 +190,13 @@ _OUTPUT: Schema = {
     "required": ["right_leg", "left_leg"],
     "additionalProperties": False,
 }
-_INPUT: Schema = {
+GAIT_SCHEMA: Schema = {
     **_OUTPUT,
     "oneOf": [{"required": [name]} for name in ("symmetry", "pairs", "groups")],
 }
 AnyGait = Annotated[
     str | GaitSpec,
-    JsonForm(read_gait, gait_as_json, {"anyOf": [_NAME, _INPUT]}, {"anyOf": [_NAME, _OUTPUT]}),
+    JsonForm(read_gait, gait_as_json, {"anyOf": [_NAME, GAIT_SCHEMA]}, {"anyOf": [_NAME, _OUTPUT]}),
 ]
 """A gait by its name, or by its legs."""
 

@@ -53,10 +53,9 @@ class Record:
         about = {"description": summary_of(source)}
         schema.setdefault("metadata", {})["pydantic_js_updates"] = about
         for field in schema["schema"]["fields"]:
-            if field["name"] in attributes:
-                describe = partial(_described, attributes[field["name"]])
-                metadata = field.setdefault("metadata", {})
-                metadata.setdefault("pydantic_js_annotation_functions", []).append(describe)
+            describe = partial(_described, attributes.get(field["name"], ""))
+            metadata = field.setdefault("metadata", {})
+            metadata.setdefault("pydantic_js_annotation_functions", []).append(describe)
             if field["name"] in cls.json_names:
                 name = cls.json_names[field["name"]]
                 field |= {"validation_alias": name, "serialization_alias": name}
@@ -65,8 +64,10 @@ class Record:
 
 def _described(about: str, schema: Any, schema_of: Any) -> Schema:
     """Return the JSON schema of a field, described unless its type is."""
-    shape = schema_of(schema)
-    return dict(shape) if "$ref" in shape else {"description": about, **shape}
+    shape = dict(schema_of(schema))
+    if schema_of.mode == "serialization":
+        shape.pop("default", None)  # all fields are written
+    return {"description": about, **shape} if about and "$ref" not in shape else shape
 
 
 def summary_of(record: type) -> str:

@@ -382,7 +382,7 @@ _LEG: Schema = {
     "properties": _numbers(LEG_RANGES),
     "additionalProperties": False,
 }
-_PLACED: Schema = {
+LEG_SCHEMA: Schema = {
     "type": "object",
     "properties": _numbers(PLACED_RANGES),
     "additionalProperties": False,
@@ -399,7 +399,7 @@ _COUNTED: Schema = {
     "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS},
     **_numbers({"mount_radius_m": MOUNT_RADIUS}),
 }
-_INPUT: Schema = {
+ROBOT_SCHEMA: Schema = {
     "type": "object",
     "properties": {
         "preset": _PRESET,
@@ -407,7 +407,7 @@ _INPUT: Schema = {
             "type": "array",
             "minItems": MIN_LEGS,
             "maxItems": MAX_LEGS,
-            "items": _PLACED,
+            "items": LEG_SCHEMA,
         },
         **_COUNTED,
         **_numbers(RANGES),
@@ -417,12 +417,12 @@ _INPUT: Schema = {
 }
 _ID: Schema = {"type": "string", "pattern": f"^[0-9a-f]{{{robot_documents.ID_DIGITS}}}$"}
 _NAME: Schema = {"type": "string", "maxLength": MAX_NAME}
-_STORED: Schema = {
-    **_INPUT,
+STORED_ROBOT_SCHEMA: Schema = {
+    **ROBOT_SCHEMA,
     "properties": {
         "id": _ID,
         "name": _NAME,
-        **{name: shape for name, shape in _INPUT["properties"].items() if name != "preset"},
+        **{name: shape for name, shape in ROBOT_SCHEMA["properties"].items() if name != "preset"},
     },
     "required": ["id"],
 }
@@ -453,7 +453,11 @@ def _write(value: Robot, library: RobotLibrary | None) -> dict[str, Any]:
 AnyRobot = Annotated[
     Robot,
     JsonForm(
-        _read, _write, {"anyOf": [_PRESET, _ID, _INPUT, _STORED]}, _OUTPUT, takes_context=True
+        _read,
+        _write,
+        {"anyOf": [_PRESET, _ID, ROBOT_SCHEMA, STORED_ROBOT_SCHEMA]},
+        _OUTPUT,
+        takes_context=True,
     ),
 ]
 """A robot: in requests a preset's name or a stored robot's id, too.

@@ -1,6 +1,26 @@
 // Written by `make page-types` from the API's response models.
 
 export type JsonValue = unknown;
+export type GaitInAnswers =
+  | (
+      | "left-right-origin"
+      | "left-right-vertical"
+      | "front-back-origin"
+      | "front-back-vertical"
+      | "tripod"
+      | "tetrapod"
+      | "trot"
+      | "pace"
+      | "bound"
+      | "one-by-one"
+    )
+  | {
+      right_leg: number;
+      left_leg: number;
+      symmetry?: "origin" | "vertical";
+      pairs?: [number, number][];
+      groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+    };
 export type GivenJsonValue = unknown;
 
 /**
@@ -674,27 +694,7 @@ export interface ChoicesOutput {
   /**
    * which legs move together: the name of a gait, or groups of legs.
    */
-  gait:
-    | (
-        | "left-right-origin"
-        | "left-right-vertical"
-        | "front-back-origin"
-        | "front-back-vertical"
-        | "tripod"
-        | "tetrapod"
-        | "trot"
-        | "pace"
-        | "bound"
-        | "one-by-one"
-      )
-    | {
-        right_leg: number;
-        left_leg: number;
-        symmetry?: "origin" | "vertical";
-        pairs?: [number, number][];
-        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
-      }
-    | null;
+  gait: GaitInAnswers | null;
   /**
    * largest torque of all servos [N·m].
    */
@@ -1119,77 +1119,81 @@ export interface EntryConfig {
   /**
    * a creature that the rules allow; null for the robot of the rules.
    */
-  robot: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  } | null;
+  robot: RobotInAnswers | null;
   /**
    * SHA-256 of the trained table, hexadecimal; null for an agent that practises on each draw.
    */
   table: string | null;
+}
+/**
+ * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
+ */
+export interface RobotInAnswers {
+  preset?:
+    | "stiff"
+    | "compliant"
+    | "slippery"
+    | "ant"
+    | "crab"
+    | "spider"
+    | "starfish"
+    | "dog"
+    | "centipede"
+    | "freenove"
+    | "phantomx"
+    | "chica";
+  id?: string;
+  name?: string;
+  legs?: {
+    azimuth_deg: number;
+    radius_m: number;
+    z_m?: number;
+    yaw_deg?: number;
+    foot_out_m?: number;
+    coxa_m?: number;
+    femur_m?: number;
+    tibia_m?: number;
+    coxa_kg?: number;
+    femur_kg?: number;
+    tibia_kg?: number;
+    foot_kg?: number;
+    servo_kp?: number;
+    servo_kv?: number;
+    servo_torque_nm?: number;
+  }[];
+  [k: string]:
+    | number
+    | "stiff"
+    | "compliant"
+    | "slippery"
+    | "ant"
+    | "crab"
+    | "spider"
+    | "starfish"
+    | "dog"
+    | "centipede"
+    | "freenove"
+    | "phantomx"
+    | "chica"
+    | string
+    | {
+        azimuth_deg: number;
+        radius_m: number;
+        z_m?: number;
+        yaw_deg?: number;
+        foot_out_m?: number;
+        coxa_m?: number;
+        femur_m?: number;
+        tibia_m?: number;
+        coxa_kg?: number;
+        femur_kg?: number;
+        tibia_kg?: number;
+        foot_kg?: number;
+        servo_kp?: number;
+        servo_kv?: number;
+        servo_torque_nm?: number;
+      }[]
+    | undefined;
 }
 /**
  * An entry of a tournament.
@@ -1369,76 +1373,7 @@ export interface TrainingConfigView {
         pairs?: [number, number][];
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
-  /**
-   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
-   */
-  robot: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  };
+  robot: RobotInAnswers;
   /**
    * `mujoco` (physics) or `kinematic` (ideal, no slip).
    */
@@ -1575,76 +1510,7 @@ export interface RaceConfigView {
         pairs?: [number, number][];
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
-  /**
-   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
-   */
-  robot: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  };
+  robot: RobotInAnswers;
   /**
    * `mujoco` (physics) or `kinematic` (ideal, no slip).
    */
@@ -1833,103 +1699,15 @@ export interface ExperimentConfig {
   /**
    * every combination is a setting; without gaits, each robot has the gait that suits it.
    */
-  gaits: (
-    | (
-        | "left-right-origin"
-        | "left-right-vertical"
-        | "front-back-origin"
-        | "front-back-vertical"
-        | "tripod"
-        | "tetrapod"
-        | "trot"
-        | "pace"
-        | "bound"
-        | "one-by-one"
-      )
-    | {
-        right_leg: number;
-        left_leg: number;
-        symmetry?: "origin" | "vertical";
-        pairs?: [number, number][];
-        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
-      }
-  )[];
+  gaits: GaitInAnswers[];
   /**
    * every combination is a setting; without gaits, each robot has the gait that suits it.
    */
   observations: ("measured" | "commanded" | "planned")[];
   /**
    * every combination is a setting; without gaits, each robot has the gait that suits it.
-   *
-   * Items: A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
    */
-  robots: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  }[];
+  robots: RobotInAnswers[];
   /**
    * simulator of all trials.
    */
@@ -3623,143 +3401,8 @@ export interface RobotOption {
   /**
    * of a stored robot: by value, for links that are opened where it is not stored; null for one that is built in or from a file.
    */
-  body: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  } | null;
-  /**
-   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
-   */
-  robot: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  };
+  body: RobotInAnswers | null;
+  robot: RobotInAnswers;
   /**
    * side of a foot grid that suits its size.
    */
@@ -4073,26 +3716,7 @@ export interface PublishedView {
  * all landings.
  */
 export interface QTableView {
-  gait:
-    | (
-        | "left-right-origin"
-        | "left-right-vertical"
-        | "front-back-origin"
-        | "front-back-vertical"
-        | "tripod"
-        | "tetrapod"
-        | "trot"
-        | "pace"
-        | "bound"
-        | "one-by-one"
-      )
-    | {
-        right_leg: number;
-        left_leg: number;
-        symmetry?: "origin" | "vertical";
-        pairs?: [number, number][];
-        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
-      };
+  gait: GaitInAnswers;
   divisions: number;
   grid_side_m: number;
   cells: [number, number][];
@@ -5047,76 +4671,7 @@ export interface TournamentRules {
         pairs?: [number, number][];
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
-  /**
-   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
-   */
-  robot: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  };
+  robot: RobotInAnswers;
   /**
    * `mujoco` (physics) or `kinematic` (ideal, no slip).
    */
@@ -5161,100 +4716,12 @@ export interface TournamentRules {
   worlds: string[];
   /**
    * creatures that an entry may choose beside `robot`.
-   *
-   * Items: A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
    */
-  robots: {
-    preset?:
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica";
-    id?: string;
-    name?: string;
-    legs?: {
-      azimuth_deg: number;
-      radius_m: number;
-      z_m?: number;
-      yaw_deg?: number;
-      foot_out_m?: number;
-      coxa_m?: number;
-      femur_m?: number;
-      tibia_m?: number;
-      coxa_kg?: number;
-      femur_kg?: number;
-      tibia_kg?: number;
-      foot_kg?: number;
-      servo_kp?: number;
-      servo_kv?: number;
-      servo_torque_nm?: number;
-    }[];
-    [k: string]:
-      | number
-      | "stiff"
-      | "compliant"
-      | "slippery"
-      | "ant"
-      | "crab"
-      | "spider"
-      | "starfish"
-      | "dog"
-      | "centipede"
-      | "freenove"
-      | "phantomx"
-      | "chica"
-      | string
-      | {
-          azimuth_deg: number;
-          radius_m: number;
-          z_m?: number;
-          yaw_deg?: number;
-          foot_out_m?: number;
-          coxa_m?: number;
-          femur_m?: number;
-          tibia_m?: number;
-          coxa_kg?: number;
-          femur_kg?: number;
-          tibia_kg?: number;
-          foot_kg?: number;
-          servo_kp?: number;
-          servo_kv?: number;
-          servo_torque_nm?: number;
-        }[]
-      | undefined;
-  }[];
+  robots: RobotInAnswers[];
   /**
    * gait of each of `robots`, in order; empty for those that suit them, which are then written out, since what suits a stored robot is not known everywhere.
    */
-  gaits: (
-    | (
-        | "left-right-origin"
-        | "left-right-vertical"
-        | "front-back-origin"
-        | "front-back-vertical"
-        | "tripod"
-        | "tetrapod"
-        | "trot"
-        | "pace"
-        | "bound"
-        | "one-by-one"
-      )
-    | {
-        right_leg: number;
-        left_leg: number;
-        symmetry?: "origin" | "vertical";
-        pairs?: [number, number][];
-        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
-      }
-  )[];
+  gaits: GaitInAnswers[];
   /**
    * whether a trained table may enter.
    */

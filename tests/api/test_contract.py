@@ -90,8 +90,7 @@ def test_every_operation_describes_all_its_responses(
             is_problem = int(status) >= 400
             assert is_problem == (list(content) == ["application/problem+json"]), (path, status)
             for media_type, form in content.items():
-                schema = form.get("schema") or form.get("itemSchema")
-                assert schema, (path, status, media_type)
+                assert form["schema"], (path, status, media_type)
 
 
 def test_the_policy_says_with_which_statuses_a_route_can_refuse() -> None:

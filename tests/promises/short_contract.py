@@ -3,6 +3,8 @@
 import copy
 from typing import Any
 
+from app.api.shared_schemas import shared_schemas
+
 AGENTS = ("QLearning", "Beam")
 """The default one, which learns, and a search with settings of its own."""
 KINDS = ("Training", "Lane", "Entry")
@@ -26,6 +28,10 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     of these have in common the first one keeps. Of a lesson as YAML only what it needs is left: it
     is read as the JSON is.
     """
+    contract = {**contract, "components": copy.deepcopy(contract["components"])}
+    for name in shared_schemas():
+        del contract["components"]["schemas"][name]
+    contract = _without_shared(contract)
     short: dict[str, Any] = _with_few_choices(contract)
     for path in (DISTURBS, STORES_ROBOTS, READS_ROBOTS):
         short["paths"][path]["post"] = copy.deepcopy(contract["paths"][path]["post"])
@@ -56,6 +62,26 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
             schema["anyOf"].remove(parts_of_gait)
     _shorten_yaml(short)
     return short
+
+
+def _without_shared(part: Any) -> Any:
+    """Return a part of a document with what many bodies share in each of them, not by reference."""
+    if isinstance(part, list):
+        return [_without_shared(item) for item in part]
+    if not isinstance(part, dict):
+        return part
+    shared = shared_schemas().get(_name_of(part), {})
+    whole = {**shared, **{name: part[name] for name in part if not shared or name != "$ref"}}
+    if "anyOf" in whole:
+        choices = map(_choices, whole["anyOf"])
+        whole["anyOf"] = [choice for several in choices for choice in several]
+    return {name: _without_shared(member) for name, member in whole.items()}
+
+
+def _choices(schema: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the choices of a shared schema of several, or a schema itself."""
+    choices: list[dict[str, Any]] | None = shared_schemas().get(_name_of(schema), {}).get("anyOf")
+    return [schema] if choices is None else choices
 
 
 def _schema_of(contract: dict[str, Any], path: str, media: str = "application/json") -> Any:
@@ -121,8 +147,8 @@ def _is_choice_of(name: str, schema: dict[str, Any]) -> bool:
     return name in {_name_of(choice) for choice in schema.get("oneOf", ())}
 
 
-def _name_of(reference: dict[str, str]) -> str:
-    return reference.get("$ref", "").rpartition("/")[2]
+def _name_of(reference: dict[str, Any]) -> str:
+    return str(reference.get("$ref", "")).rpartition("/")[2]
 
 
 def _is_robot(schema: dict[str, Any]) -> bool:

@@ -79,6 +79,7 @@ def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     status_code=201,
     tags=["runs"],
     summary="Import an archive of runs",
+    name="import_runs",
     openapi_extra=takes_file("application/octet-stream"),
 )
 @policy(access=OPERATOR, starts=True, takes_file=True)

@@ -115,7 +115,7 @@ def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
 
 @router.post("/{code}/predictions", status_code=201, summary="Answer a card")
 @policy(access=participant("predict"))
-def predict(
+def add_prediction(
     services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody
 ) -> RecordResponse[PredictionView]:
     """Store the answer of the participant who asks; it can be given once, before the reveal."""
@@ -134,7 +134,7 @@ def predict(
     },
 )
 @policy(access=participant("run"), work=work_of_card, starts=True)
-def start_run(
+def start_room_run(
     services: ServicesDep,
     request: Request,
     code: CodePath,
@@ -173,7 +173,7 @@ def start_run(
 
 @router.put("/{code}/runs/{run_id}/watched", status_code=204, summary="Tell that a run was watched")
 @policy(access=participant("watch"))
-def note_watched(services: ServicesDep, code: CodePath, seed: SeatDep, run_id: RunPath) -> None:
+def note_watched_run(services: ServicesDep, code: CodePath, seed: SeatDep, run_id: RunPath) -> None:
     """Note that the participant who asks has watched a run of theirs to its end.
 
     Before the reveal the projector does not tell how far it came until then, as long as the page of

@@ -294,7 +294,7 @@ def put_spotlight(
     responses=answers(200, {MEDIA_TYPE: TEXT}),
 )
 @policy(access=WATCH_ROOM)
-def get_results(
+def get_room_results(
     services: ServicesDep,
     request: Request,
     code: CodePath,

@@ -79,7 +79,7 @@ def stop_teaching(services: ServicesDep, code: CodePath) -> RecordResponse[Teach
 
 @router.post("/{code}/presses", status_code=201, summary="Press + or −", responses=answers(201))
 @policy(access=participant("press"))
-def press(
+def add_press(
     services: ServicesDep, code: CodePath, seed: SeatDep, body: PressBody
 ) -> RecordResponse[PressView]:
     """Tell a robot that what it does in the picture is good (1) or bad (-1).

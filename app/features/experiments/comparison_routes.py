@@ -47,7 +47,7 @@ UnitQuery = Annotated[
     response_model=SettingComparisonView,
 )
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_comparison(
+def get_experiment_comparison(
     services: ServicesDep,
     run_id: RunPath,
     *,
@@ -74,7 +74,7 @@ def get_comparison(
     responses=answers(200, dict.fromkeys(_MEDIA_TYPES.values(), BINARY), headers=ATTACHMENT),
 )
 @policy(access=WATCH_RUN, work=ENCODING)
-def get_figure(
+def get_experiment_figure(
     services: ServicesDep,
     run_id: RunPath,
     *,

@@ -55,7 +55,7 @@ router = run_routes("experiment", ExperimentView, ExperimentPage, changed_by=OPE
 
 @router.get("/{run_id}/summary", summary="Get an experiment's summary", response_model=SummaryView)
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
+def get_experiment_summary(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the newest summary, which is recomputed every few seconds while trials run."""
     run = find(services, "experiment", run_id)
     summary = services.store.open_artifact(run_id, SUMMARY)
@@ -71,7 +71,7 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_report(services: ServicesDep, run_id: RunPath) -> Response:
+def get_experiment_report(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the whole report as one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
     _open_report_file(services, run, SUMMARY).close()
@@ -92,7 +92,7 @@ def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     responses=answers(200, _FILE_SCHEMAS, headers=ATTACHMENT),
 )
 @policy(access=WATCH_RUN, work=DOWNLOAD)
-def get_file(
+def get_experiment_file(
     services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="file name")]
 ) -> Response:
     """Return one of the report's files, which the run's `result` lists in `files`."""
@@ -107,7 +107,7 @@ def get_file(
     responses=answers(200, {"text/csv": TEXT}),
 )
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_trials(
+def get_experiment_trials(
     services: ServicesDep,
     request: Request,
     run_id: RunPath,

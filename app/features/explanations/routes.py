@@ -52,7 +52,7 @@ def explain_step(
     ),
 )
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_table_at(
+def get_table_at_step(
     services: ServicesDep,
     run_id: RunPath,
     step: Annotated[int | None, Query(description="after so many steps; newest if absent")] = None,

@@ -110,7 +110,7 @@ for _name, _format in EXPORTS.items():
         f"/{_name}",
         _endpoint(_format),
         methods=[_format.method],
-        name=f"{'render' if _format.load == 'render' else 'get'}_{_name}",
+        name=f"{'render' if _format.load == 'render' else 'get'}_run_{_name}",
         summary=f"Export {_format.title} ({', '.join(f'.{ending}' for ending in _format.endings)})",
         description=_description(_format),
         response_class=Response,

@@ -87,7 +87,8 @@ class RobotChangeBody(PatchBody):
 
 def _described(body: type[Body]) -> dict[str, Any]:
     """Return the schema of a body, which refers to records that the document describes."""
-    schema = body.model_json_schema(ref_template="#/components/schemas/{model}")
+    # FastAPI names so what requests have of a record that answers have in another form.
+    schema = body.model_json_schema(ref_template="#/components/schemas/{model}-Input")
     schema.pop("$defs", None)
     return schema
 
@@ -123,7 +124,7 @@ class ChoicesBody(Body):
     },
 )
 @policy(access=OPERATOR, work=READING, takes_file=True)
-def read_file(
+def read_robot_file(
     services: ServicesDep,
     body: BodyDep,
     file: Annotated[Name | None, Query(description="name of the file")] = None,
@@ -141,7 +142,7 @@ def read_file(
 
 @router.post("/readings/{reading_id}", summary="Read a robot's file as a person decides")
 @policy(access=OPERATOR, work=READING)
-def read_again(
+def read_robot_again(
     services: ServicesDep,
     reading_id: Annotated[str, Path(max_length=64, description="id of a reading")],
     body: ChoicesBody,
@@ -152,7 +153,9 @@ def read_again(
 
 @router.post("/{robot_id:robot}/reading", summary="Look at the file of a stored robot")
 @policy(access=OPERATOR, work=READING)
-def read_stored(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[RobotReadingView]:
+def read_stored_robot(
+    services: ServicesDep, robot_id: RobotPath
+) -> RecordResponse[RobotReadingView]:
     """Read the file of a stored robot by its choices, as `POST /robots/readings` does."""
     stored, upload = stored_file(services.store, robot_id)
     choices = AS_FOUND if stored.choices is None else from_json(Choices, stored.choices)
@@ -259,7 +262,7 @@ def change_robot(
 
 
 @router.delete(
-    "/{robot_id:robot}", status_code=204, summary="Delete a stored robot", name="del_robot"
+    "/{robot_id:robot}", status_code=204, summary="Delete a stored robot", name="delete_robot"
 )
 @policy(access=OPERATOR)
 def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:

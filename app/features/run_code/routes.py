@@ -14,7 +14,9 @@ router = api_router(prefix="/runs", tags=["runs"])
 
 @router.get("/{run_id}/code", summary="Get commands and Python that repeat a run")
 @policy(access=WATCH_RUN, work=ANALYSIS)
-def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> RecordResponse[CodeView]:
+def get_run_code(
+    services: ServicesDep, request: Request, run_id: RunPath
+) -> RecordResponse[CodeView]:
     """Return commands for a shell and a Python program, each of which repeats exactly this run.
 
     Trainings that it uses are practised first; a table that no practice repeats is downloaded.

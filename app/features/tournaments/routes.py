@@ -172,7 +172,7 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
         },
     )
     @policy(access=ENTER_TOURNAMENT)
-    def enter(
+    def enter_tournament(
         services: ServicesDep,
         tournament_id: TournamentPath,
         reader: ReaderDep,

@@ -57,7 +57,7 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
         ),
     )
     @policy(access=QUESTION, work=WHAT_IF)
-    def ask(
+    def ask_what_if(
         services: ServicesDep, request: Request, role: RoleDep, body: training_body
     ) -> RecordResponse[ComparisonView]:
         """Return distances with these settings and with defaults, on the kinematic simulator."""
