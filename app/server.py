@@ -79,8 +79,9 @@ from app.viewer.shared_stage import SharedStage
 from app.viewer.viewer_page import viewer_routes
 from hexapods import assets
 from hexapods.domain.errors import HexapodError, InvalidInput
-from hexapods.processes import return_freed_memory, start_fork_server
+from hexapods.processes import start_fork_server
 from hexapods.runs.config import usable_agents
+from hexapods.system_processes import return_freed_memory
 from hexapods.version import __version__
 
 _logger = logging.getLogger(__name__)

@@ -20,8 +20,10 @@ Modules beside the packages, each of which has a map in its docstring:
 - `assets`: where models, page and documents are; `offline_page`: parts of the page in one file;
   `files`: atomic writes and locks; `machine`: cores and memory; `extras`: optional packages;
   `version`: of the product.
-- `processes`: start, set-up, watch and end of processes; `clean_start`: they do not import the
-  program that starts them; `fork_server_end`: no folder is left; `worker_pool`: their executor.
+- `processes`: start, set-up, watch and end of processes; `system_processes`: what operating systems
+  do differently with them; `clean_start`: they do not import the program that starts them;
+  `fork_server`: from which Linux forks them; `fork_server_end`: no folder is left; `worker_pool`:
+  their executor.
 """
 
 import importlib

@@ -8,8 +8,10 @@ A module of an extra is imported under `needs`, and nowhere else, which a test c
 
 import importlib.util
 import os
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 
 from hexapods.domain.errors import InvalidInput
 
@@ -53,9 +55,27 @@ def _missing(extra: str, purpose: str, reason: object) -> MissingExtra:
     )
 
 
-def install_command(extra: str) -> str:
-    """Return the shell command that installs an extra."""
-    return f"pip install 'racing-hexapods[{extra}]'"
+def install_command(*extras: str) -> str:
+    """Return the shell command that installs extras into the environment of this process.
+
+    It is the same in a checkout as with a package from an index: what is installed already is not
+    looked for there. Its quotes are those of every shell.
+
+    Raises:
+        InvalidInput: if there is no such extra; the message names those that there are.
+    """
+    if unknown := [extra for extra in extras if extra not in MODULES]:
+        raise InvalidInput(f"there is no extra {unknown[0]!r}; the extras are {', '.join(MODULES)}")
+    package = f'"racing-hexapods[{",".join(extras)}]"'
+    if importlib.util.find_spec("pip") is not None:
+        return f"pip install {package}"
+    # An environment of uv, which has no pip.
+    prefix = Path(sys.prefix)
+    if (prefix / "uv-receipt.toml").is_file():
+        return f"uv tool install {package}"
+    if any((folder / "CACHEDIR.TAG").is_file() for folder in prefix.parents):
+        return f"uvx --from {package} racing-hexapods"
+    return f"uv pip install {package}"
 
 
 def is_installed(extra: str) -> bool:

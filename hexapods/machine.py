@@ -3,13 +3,13 @@
 import math
 import os
 import platform
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 
 _CGROUPS = Path("/sys/fs/cgroup")
 
@@ -40,11 +40,9 @@ def instructions() -> str:
     return " ".join([platform.machine(), *used[-1:]])
 
 
-def memory_bytes() -> int | None:
-    """Return the size of the usable memory; None if the system does not tell."""
-    if sys.platform == "win32":
-        return None
-    size = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+def memory_bytes() -> int:
+    """Return the size of the usable memory."""
+    size = psutil.virtual_memory().total
     limit = _limit("memory.max") or _limit("memory/memory.limit_in_bytes")
     return min([size, *limit])
 

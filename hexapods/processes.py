@@ -5,7 +5,6 @@ what they need: a fork starts in some hundredths of the time, and shares that me
 where the libraries that are used do not all survive a fork, each is started anew.
 """
 
-import ctypes
 import multiprocessing
 import os
 import shutil
@@ -14,34 +13,48 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cache
-from multiprocessing import connection, forkserver, resource_tracker
+from multiprocessing import connection
 from multiprocessing.connection import Connection
-from multiprocessing.context import ForkServerContext, SpawnContext
+from multiprocessing.context import SpawnContext
 from multiprocessing.process import BaseProcess
-from pathlib import Path
+from typing import Any
 
 from hexapods.clean_start import clean_start
 from hexapods.domain.robot_library import LIBRARY, RobotLibrary
+from hexapods.system_processes import (
+    die_with_parent,
+    is_stopped,
+    kill_group,
+    lead_group,
+    lower_priority,
+    memory_bytes,
+    processor_s,
+    set_process_name,
+    sigint_blocked,
+)
+
+if sys.platform == "linux":
+    from multiprocessing.context import ForkServerContext
+
+    from hexapods.fork_server import fork_server_context, preload
+
+    Context = ForkServerContext | SpawnContext
+else:
+    Context = SpawnContext
 
 STALLED_S = 8.0
 """A process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
 LOST = 255
 """Exit code that `multiprocessing` gives a process when the fork server has ended, not it."""
-_PRELOADED = "hexapods.fork_server_end"
-"""Module that each fork server imports."""
 _START_S = 5.0
 """Time in which a process starts although the fork server has just ended."""
-_RETRY_S, _CONTINUED_EVERY_S = 0.1, 0.5
+_RETRY_S = 0.1
 _FROZEN_S = 5.0
 """After a longer time between two looks this process was stopped itself."""
 _END_S = 5.0
-_PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15
-_M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
-_RETURNED_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,13 +82,12 @@ class SetUp:
     def apply(self) -> None:
         """Set this process up; it ignores SIGINT, and ends with the process that started it."""
         set_process_name(self.name)
-        with suppress(OSError):
-            os.nice(self.niceness)
+        lower_priority(self.niceness)
         # Ctrl-C goes to the terminal's whole process group; who starts processes ends them itself.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         _end_with_parent(self.temporary)
         if self.leads_group:
-            os.setpgrp()
+            lead_group()
         os.environ.update(self.environment)
         if self.temporary is not None:
             os.environ["TMPDIR"] = self.temporary
@@ -114,7 +126,7 @@ class Child:
             OSError: if the system cannot create another process.
         """
         deadline_s = time.monotonic() + _START_S
-        with _sigint_blocked():
+        with sigint_blocked():
             while not self._has_started():
                 if time.monotonic() > deadline_s:
                     raise OSError("the process that forks others has ended")
@@ -137,7 +149,7 @@ class Child:
         """
         now_s, looked_s = time.monotonic(), self._looked_s
         self._looked_s = now_s
-        if self.pid is None or not _is_stopped(self.pid):
+        if self.pid is None or not is_stopped(self.pid):
             self._stopped_since_s = None
             return 0.0
         if self._stopped_since_s is None or now_s - looked_s > _FROZEN_S:
@@ -145,30 +157,22 @@ class Child:
         return now_s - self._stopped_since_s
 
     def memory_bytes(self) -> int:
-        """Return the resident memory of the process [bytes]; Linux only, else 0."""
-        try:
-            pages = int(Path(f"/proc/{self.pid}/statm").read_bytes().split()[1])
-        except OSError:  # it has exited, or this is not Linux
-            return 0
-        return pages * os.sysconf("SC_PAGE_SIZE")
+        """Return the resident memory of the process [bytes]; 0 after its exit."""
+        pid = self.pid
+        return 0 if pid is None else memory_bytes(pid)
 
     def processor_s(self) -> float:
-        """Return the time that processors have spent on the process [s]; Linux only, else 0."""
-        try:
-            fields = Path(f"/proc/{self.pid}/stat").read_text(encoding="ascii", errors="replace")
-        except OSError:  # it has exited, or this is not Linux
-            return 0.0
-        # After the name, which is in brackets and may have blanks.
-        user, system = fields.rpartition(")")[2].split()[11:13]
-        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+        """Return the time that processors have spent on the process [s]; 0 after its exit."""
+        pid = self.pid
+        return 0.0 if pid is None else processor_s(pid)
 
     def kill(self) -> None:
-        """Kill the process and its group by SIGKILL: at once, or as soon as it starts."""
+        """Kill the process and its group (SIGKILL): at once, or as soon as it starts."""
         self.is_killed = True
         pid = self.pid  # another thread may end it meanwhile
         with suppress(ValueError):  # it has ended
             if pid is not None and self._process.is_alive():
-                _kill_group(pid)
+                kill_group(pid)
                 self._process.kill()  # it may have no group yet
 
     def end(self) -> int | None:
@@ -184,7 +188,7 @@ class Child:
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
-        _kill_group(self.pid)  # what it started and did not end
+        kill_group(self.pid)  # what it started and did not end
         self.pid, code = None, self._process.exitcode
         self._process.close()
         return code
@@ -196,7 +200,9 @@ class Child:
         socket.
         """
         context = process_context()
-        self.pipe, other_end = context.Pipe()
+        # On Windows both ends are of another class, with the same methods.
+        ends: tuple[Any, Any] = context.Pipe()
+        self.pipe, other_end = ends
         arguments = self._target, self._set_up, LIBRARY, other_end
         self._process = context.Process(target=_run, args=arguments, name=self._set_up.name)
         try:
@@ -222,16 +228,12 @@ def _run(
     target(pipe)
 
 
-def process_context() -> ForkServerContext | SpawnContext:
+def process_context() -> Context:
     """Return the `multiprocessing` context that creates processes."""
-    if sys.platform != "linux":
+    if sys.platform == "linux":
+        return fork_server_context()
+    else:  # noqa: RET505 - mypy would call what follows unreachable
         return multiprocessing.get_context("spawn")
-    # No public attribute has it.
-    preloaded = vars(forkserver._forkserver)["_preload_modules"]  # noqa: SLF001
-    if _PRELOADED not in preloaded:
-        forkserver.set_forkserver_preload([*preloaded, _PRELOADED])
-    _start_watch()
-    return multiprocessing.get_context("forkserver")
 
 
 def start_fork_server(preloaded: Sequence[str]) -> None:
@@ -244,56 +246,7 @@ def start_fork_server(preloaded: Sequence[str]) -> None:
         OSError: if the system cannot create a process.
     """
     if sys.platform == "linux":
-        forkserver.set_forkserver_preload([*preloaded, _PRELOADED])
-        with _sigint_blocked(), clean_start(imports_main=False):
-            forkserver.ensure_running()
-
-
-@cache
-def _start_watch() -> None:
-    """Continue a fork server that was stopped by a signal for `_CONTINUED_EVERY_S` (SIGCONT).
-
-    While it is stopped, starting or joining a process blocks.
-    """
-
-    def watch() -> None:
-        stopped: int | None = None
-        while True:
-            time.sleep(_CONTINUED_EVERY_S)
-            # No public attribute has it.
-            pid = vars(forkserver._forkserver)["_forkserver_pid"]  # noqa: SLF001
-            is_stopped = pid is not None and _is_stopped(pid)
-            if is_stopped and pid == stopped:
-                with suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGCONT)
-            stopped = pid if is_stopped else None
-
-    threading.Thread(target=watch, name="fork server's watch", daemon=True).start()
-
-
-@contextmanager
-def _sigint_blocked() -> Iterator[None]:
-    """Let processes started meanwhile not be ended by Ctrl-C before they are set up.
-
-    A process inherits the signal mask of the thread that starts it.
-    """
-    if sys.platform == "win32":
-        yield
-        return
-    # Starting the resource tracker unblocks SIGINT, so that it must be running beforehand.
-    with clean_start(imports_main=False):
-        resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def die_with_parent() -> None:
-    """Let the kernel kill this process when the thread that started it ends; Linux only."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        preload(preloaded)
 
 
 def _end_with_parent(temporary: str | None) -> None:
@@ -314,54 +267,3 @@ def _end_with_parent(temporary: str | None) -> None:
             os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-def _kill_group(pid: int) -> None:
-    """Kill the processes of a group that still run (SIGKILL), if it exists.
-
-    Args:
-        pid: id of the process that leads or led it.
-    """
-    # The group has ended, or consists of zombies, which macOS does not allow to kill.
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(pid, signal.SIGKILL)
-
-
-def processor_s(pid: int) -> float:
-    """Return the processor time that a process has taken [s]; Linux only, else 0."""
-    try:
-        status = Path(f"/proc/{pid}/stat").read_bytes()
-    except OSError:  # it has exited, or this is not Linux
-        return 0.0
-    # User and system time are the 14th and 15th field; the name, the second, may contain any.
-    fields = status.rpartition(b") ")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def _is_stopped(pid: int) -> bool:
-    """Whether a signal such as SIGSTOP has stopped a process; Linux only, else False."""
-    try:
-        status = Path(f"/proc/{pid}/stat").read_bytes()
-    except OSError:  # it has exited, or this is not Linux
-        return False
-    # The state follows the name, which is in parentheses and may contain any.
-    return status.rpartition(b") ")[2][:1] == b"T"
-
-
-def return_freed_memory() -> None:
-    """Let the allocator return large buffers to the system as soon as they are freed; glibc only.
-
-    By itself it keeps up to 64 MB for the next ones, once it has seen some of 32 MB.
-    """
-    if sys.platform == "linux":
-        # Other C libraries have no such options, and keep less.
-        with suppress(AttributeError):
-            libc = ctypes.CDLL(None)
-            libc.mallopt(_M_MMAP_THRESHOLD, _RETURNED_BYTES)
-            libc.mallopt(_M_TRIM_THRESHOLD, _RETURNED_BYTES)
-
-
-def set_process_name(name: str) -> None:
-    """Set the name that `top` and `ps -o comm` show, of which Linux keeps 15 bytes."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_NAME, name.encode())

@@ -19,7 +19,7 @@ from typing import IO
 from unittest import mock
 
 from app.cli import main
-from hexapods.processes import die_with_parent
+from hexapods.system_processes import die_with_parent
 
 HEXAPODS = [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())"]
 _ROOT = str(Path(__file__).parents[1])

@@ -14,6 +14,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from hexapods.domain.errors import InvalidInput
 from hexapods.extras import MODULES, MissingExtra, install_command, is_installed, needs
 
 CHECKOUT = Path(__file__).parents[1]
@@ -122,3 +123,29 @@ def test_a_missing_module_is_reported_in_one_line_with_the_command_that_installs
     assert str(raised.value).startswith("a walk needs a package that is not installed here (")
     assert f"`{install_command(extra)}` installs it" in str(raised.value)
     assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("marks", "command"),
+    [
+        ((), 'uv pip install "racing-hexapods[gym,mcap]"'),
+        (("tool/uv-receipt.toml",), 'uv tool install "racing-hexapods[gym,mcap]"'),
+        (("CACHEDIR.TAG",), 'uvx --from "racing-hexapods[gym,mcap]" racing-hexapods'),
+    ],
+    ids=["environment", "tool", "cache"],
+)
+def test_in_an_environment_of_uv_the_command_is_of_uv(
+    marks: tuple[str, ...], command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert install_command("gym", "mcap") == 'pip install "racing-hexapods[gym,mcap]"'
+    (tmp_path / "tool").mkdir()
+    for mark in marks:
+        (tmp_path / mark).touch()
+    monkeypatch.setattr(sys, "prefix", str(tmp_path / "tool"))
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert install_command("gym", "mcap") == command
+
+
+def test_an_unknown_extra_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(InvalidInput, match=r"no extra 'figure'; the extras are cluster, figures, "):
+        install_command("gym", "figure")

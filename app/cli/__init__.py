@@ -59,6 +59,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _has_no_reader(output: TextIO) -> bool:
+    if sys.platform == "win32":
+        return True  # it cannot be asked there
     poll = select.poll()
     poll.register(output.fileno(), 0)  # errors and the other end's closing are always told
     return bool(poll.poll(0))

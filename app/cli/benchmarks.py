@@ -4,7 +4,6 @@ Machines are shared and noisy: the compared measurements alternate, and the mini
 rounds is used, since noise only adds time.
 """
 
-import os
 import statistics
 import time
 from collections.abc import Callable, Sequence
@@ -18,6 +17,7 @@ from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.observation import legal_actions, observe
 from hexapods.domain.types import Action, FloatArray
 from hexapods.drawing.replay_encoding import encode_frames
+from hexapods.machine import cores
 from hexapods.physics.mjcf import compile_visual_model
 from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
 from hexapods.runs.config import TrainingConfig, WalkingProblem
@@ -82,7 +82,7 @@ def look_ahead() -> dict[str, float]:
         "lookahead_speedup": min(single_s) / min(parallel_s),
         "planning_overhead": (min(parallel_s) - min(physics_s)) / min(parallel_s),
         "two_step_decision_s": min(parallel_s),
-        "threads": float(len(os.sched_getaffinity(0))),
+        "threads": float(cores()),
     }
 
 

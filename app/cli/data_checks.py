@@ -60,11 +60,10 @@ def _machine(settings: Settings) -> str:
         raise CheckFailed(
             f"{used_mb:,} MB of {quota_mb:,} MB are used: delete runs, or raise {PREFIX}QUOTA_MB"
         )
-    memory_mb = (machine.memory_bytes() or 0) // MB
     return ", ".join(
         [
             f"{counted(machine.cores(), 'core')} for a job each",
-            *([f"{memory_mb:,} MB of memory"] if memory_mb else []),
+            f"{machine.memory_bytes() // MB:,} MB of memory",
             f"{used_mb:,} MB {f'of {quota_mb:,} MB ' if quota_mb is not None else ''}used on disk",
             f"{free_mb:,} MB free",
         ]

@@ -55,7 +55,7 @@ def _packages() -> str:
     missing = [extra for extra in MODULES if not is_installed(extra)]
     if not missing:
         return installation
-    return f"{installation}; without {', '.join(missing)}: {install_command(','.join(missing))}"
+    return f"{installation}; without {', '.join(missing)}: {install_command(*missing)}"
 
 
 def changed_file(package: Distribution) -> str | None:

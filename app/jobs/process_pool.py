@@ -16,7 +16,8 @@ from typing import TypeVar
 
 from app.storage.errors import Busy
 from hexapods.domain.errors import HexapodError, InvalidInput
-from hexapods.processes import SetUp, processor_s
+from hexapods.processes import SetUp
+from hexapods.system_processes import processor_s
 from hexapods.worker_pool import WorkerPool
 
 IDLE_S = 60.0
@@ -93,7 +94,7 @@ class ProcessPool:
             check: called ten times a second meanwhile; if it raises, the request is given up, and
                 the processes that work for it are killed.
             limit_s: processor time that all calls together may take [s]. Unlike the timeout it does
-                not depend on what else the machine does. Linux only.
+                not depend on what else the machine does.
 
         Returns:
             what it returned, in the same order.

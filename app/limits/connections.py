@@ -1,12 +1,14 @@
 """Connection limits: maximum of open connections in total and per address, and eviction.
 
-A connection counts from `accept` until its socket is closed.
+A connection counts from `accept`, or from its first event where the event loop accepts by itself,
+until its socket is closed.
 At a limit, a connection of the address with the most connections is evicted: the one idle for
 longest, or else the oldest with a request. So new addresses are admitted, and a flood of idle
 connections evicts only its own.
 """
 
 import select
+import sys
 import time
 from collections import OrderedDict
 from collections.abc import Callable
@@ -89,7 +91,7 @@ class Connection:
         """
         if self not in self._table._open:
             return True
-        if not _CLOSED_BY_CLIENT:
+        if sys.platform == "win32" or not _CLOSED_BY_CLIENT:
             return False
         poll = select.poll()
         poll.register(self.file, _CLOSED_BY_CLIENT)

@@ -48,23 +48,36 @@ class LimitedHttpProtocol(H11Protocol):
         self.conn: BoundedConnection = BoundedConnection()
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override] # as uvicorn
-        """Look the connection up in the table, and attach this protocol to it."""
+        """Attach this protocol to its connection in the table; close it if it has no place there.
+
+        The listener has admitted it already, where the event loop calls its `accept`: the loop of
+        Windows does not.
+        """
         super().connection_made(transport)
-        # An attribute of asyncio's transports.
+        # An attribute of the transports of asyncio's loops that select; others read more at once.
         transport.max_size = READ_BYTES  # type: ignore[attr-defined]
         file = transport.get_extra_info("socket").fileno()
         self._connection: Connection | None = self.table.of_file(file)
+        if self._connection is None and not transport.is_closing():
+            # Without a peer's address the client has left already.
+            peer = transport.get_extra_info("peername")
+            self._connection = peer and self.table.admit(str(peer[0]), file)
         self._since_s = time.monotonic()
         """When the server started to wait for the head or the body of a request."""
         self._body_bytes = 0
         self._stalled: tuple[float, int] | None = None
         """Start of the present stall, and the maximum of unsent bytes since; None if none."""
-        # Evicted between `accept` and this call.
         if self._connection is None:
             transport.abort()
             return
         self._connection.attach(self)
         self.app_state = {**self.app_state, "connection": self._connection}
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Give the connection's place in the table free: its socket is closed next."""
+        super().connection_lost(exc)
+        if self._connection is not None:
+            self._connection.release()
 
     def data_received(self, data: bytes) -> None:
         """Process received data, and count the bytes of a body."""

@@ -38,8 +38,9 @@ class AdmittedSocket(socket.socket):
 class Listener(socket.socket):
     """Listening socket that accepts only connections admitted by a `ConnectionTable`.
 
-    asyncio's server calls `accept` as on any socket. Refusing here costs one further system call,
-    and neither a transport nor a log record.
+    asyncio's server calls `accept` as on any socket, except on Windows, where the system accepts
+    and `http_protocol` refuses. Refusing here costs one further system call, and neither a
+    transport nor a log record.
 
     Attributes:
         table: table of the server's connections.
@@ -154,6 +155,6 @@ def listen(settings: Settings, table: ConnectionTable) -> Listener:
 
 def _open_spare() -> int | None:
     try:
-        return os.open(os.devnull, os.O_RDONLY | os.O_CLOEXEC)
+        return os.open(os.devnull, os.O_RDONLY)
     except OSError:
         return None

@@ -1,6 +1,6 @@
 """Tunes the settings of a learner by Optuna, and judges the best of them on held-out seeds.
 
-    pip install 'racing-hexapods[tuning]'
+    pip install "racing-hexapods[tuning]"
     python tune.py q-learning --settings alpha,gamma --candidates 40
 
 The settings and their ranges are those that the agent declares. Each candidate is a sweep of one

@@ -42,9 +42,8 @@ def local_pool(count: int, most_bytes: int | None = None) -> Iterator[WorkerPool
     Raises:
         ClusterLost: if they cannot be started.
     """
-    total_bytes = memory_bytes()
-    if most_bytes is None and total_bytes is not None:
-        most_bytes = int(_MEMORY_SHARE * total_bytes / count)
+    if most_bytes is None:
+        most_bytes = int(_MEMORY_SHARE * memory_bytes() / count)
     # Of a killed worker too, the temporary files are deleted with this folder; if this process is
     # killed, the workers delete it.
     with tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True) as folder:

@@ -7,6 +7,7 @@ when its time is over. Its answer comes as JSON, and is validated here.
 
 import json
 import logging
+import math
 import os
 import signal
 import sys
@@ -20,6 +21,8 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
+
+import psutil
 
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
@@ -182,9 +185,12 @@ def _wait(child: Child, limits: ReadingLimits) -> None:
     deadline_s = time.monotonic() + limits.clock_seconds
     at_start, began_s = child.memory_bytes(), child.processor_s()
     while not child.wait(_CHECK_EVERY_S):
+        used_s = child.processor_s() - began_s
+        # The child's own limits are finer, but Windows has none.
+        if used_s > _whole(limits.seconds):
+            raise DamagedFile(_too_long(limits.seconds))
         if time.monotonic() > deadline_s:
-            used_s = child.processor_s() - began_s
-            if sys.platform == "linux" and used_s < _MOST_OF_TIME * limits.seconds:
+            if used_s < _MOST_OF_TIME * limits.seconds:
                 raise NotRead(
                     f"the machine is busy: within {limits.clock_seconds:g} s it spent only "
                     f"{used_s:.1f} s on reading the file; try again"
@@ -308,24 +314,25 @@ def _limit(head: dict[str, Any]) -> None:
         return
     import resource  # noqa: PLC0415 - not on Windows
 
-    seconds = int(-(-head["seconds"] // 1))
+    is_linux = sys.platform == "linux"
     for kind, most in (
-        (resource.RLIMIT_CPU, seconds),
+        # Where it is no fork, it has spent a second on its imports.
+        (resource.RLIMIT_CPU, _whole(time.process_time() + head["seconds"])),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, _OPEN_FILES),
-        *([(resource.RLIMIT_AS, _address_space() + head["memory_bytes"])] if _is_linux() else []),
+        *([(resource.RLIMIT_AS, _address_space() + head["memory_bytes"])] if is_linux else []),
     ):
         hard = resource.getrlimit(kind)[1]
         least = most if hard == resource.RLIM_INFINITY else min(most, hard)
         resource.setrlimit(kind, (least, least))
 
 
-def _is_linux() -> bool:
-    return sys.platform == "linux"
+def _whole(seconds: float) -> int:
+    """Return the next whole number of seconds, in which systems count a limit."""
+    return math.ceil(seconds)
 
 
 def _address_space() -> int:
-    """Return the size of this process's address space; Linux only."""
-    pages = int(Path("/proc/self/statm").read_bytes().split()[0])
-    return pages * os.sysconf("SC_PAGE_SIZE")
+    """Return the size of this process's address space [bytes]."""
+    return int(psutil.Process().memory_info().vms)

@@ -64,7 +64,7 @@ def test_optional_packages_that_are_missing_are_named_with_what_installs_them(
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     passes, said = examined(tmp_path)["packages"]
     assert passes, "all of them are optional"
-    assert said.endswith("; without parquet: pip install 'racing-hexapods[parquet]'")
+    assert said.endswith('; without parquet: pip install "racing-hexapods[parquet]"')
 
 
 def test_quota_and_database_are_checked(tmp_path: Path) -> None:

@@ -100,5 +100,5 @@ def test_what_cannot_be_rendered_is_refused(
         render_video(raced, SMALL, "mp4")
     assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    with pytest.raises(MissingExtra, match=r"pip install 'racing-hexapods\[video\]'"):
+    with pytest.raises(MissingExtra, match=r'pip install "racing-hexapods\[video\]"'):
         render_video(raced, SMALL, "mp4")

@@ -181,5 +181,5 @@ def test_without_matplotlib_the_line_that_installs_it_is_named(
     summary: Mapping[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(MissingExtra, match=r"pip install 'racing-hexapods\[figures\]'"):
+    with pytest.raises(MissingExtra, match=r'pip install "racing-hexapods\[figures\]"'):
         paper_figure(summary, FigureConfig())

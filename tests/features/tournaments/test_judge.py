@@ -14,7 +14,7 @@ from app.features.tournaments.judge import MAX_DEATHS, Judge, limit_s
 from app.features.tournaments.tournament import Entrant, Tournament
 from app.features.tournaments.tournaments import Tournaments
 from app.storage.database.store import RunStore
-from hexapods.processes import processor_s
+from hexapods.system_processes import processor_s
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.rules import TournamentRules
