@@ -13,8 +13,9 @@
 - `policy` says of each route who may use it and what it costs, by kinds of `work`. `guards`
   run when a route was matched, before its body is read: `auth` (roles, and those whom features know
   by `identity`), `rate_limit`, `memory_limit`, `concurrency_limit`.
-- Middleware before the routes: `middleware` (its base, security headers), `stage_paths` (which
-  stage), `request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`.
+- Middleware before the routes: `middleware` (its base, security headers), `public_path` (below
+  which path of a site), `stage_paths` (which stage), `request_headers`, `cookies`, `host_check`,
+  `wellformed`, `problem_pages`, `unfinished`.
 
 To add a route: an endpoint with `@policy(access=…)`, on a router of `policy.api_router`, and a
 response model.

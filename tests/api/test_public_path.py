@@ -123,5 +123,6 @@ def test_a_trusted_proxy_alone_forwards_a_path(
         "headers": [(b"x-forwarded-prefix", value.encode()) for value in values],
         "state": {},
     }
-    asyncio.run(ForwardedPath(app, ["10.0.0.1"])(scope, None, None))
+    unused: Any = None
+    asyncio.run(ForwardedPath(app, ["10.0.0.1"])(scope, unused, unused))
     assert scopes[0]["state"].get("forwarded_path") == expected
