@@ -14,22 +14,22 @@ from multiprocessing import forkserver
 from hexapods.clean_start import clean_start
 from hexapods.system_processes import continue_process, is_stopped, sigint_blocked
 
-if sys.platform != "win32":
-    from multiprocessing.context import ForkServerContext
-
 _PRELOADED = "hexapods.fork_server_end"
 """Module that each fork server imports."""
 _CONTINUED_EVERY_S = 0.5
 
 
-def fork_server_context() -> "ForkServerContext":
-    """Return the `multiprocessing` context whose processes are forks of the fork server."""
-    # No public attribute has it.
-    preloaded = vars(forkserver._forkserver)["_preload_modules"]  # noqa: SLF001
-    if _PRELOADED not in preloaded:
-        forkserver.set_forkserver_preload([*preloaded, _PRELOADED])
-    _start_watch()
-    return multiprocessing.get_context("forkserver")
+if sys.platform != "win32":
+    from multiprocessing.context import ForkServerContext
+
+    def fork_server_context() -> ForkServerContext:
+        """Return the `multiprocessing` context whose processes are forks of the fork server."""
+        # No public attribute has it.
+        preloaded = vars(forkserver._forkserver)["_preload_modules"]  # noqa: SLF001
+        if _PRELOADED not in preloaded:
+            forkserver.set_forkserver_preload([*preloaded, _PRELOADED])
+        _start_watch()
+        return multiprocessing.get_context("forkserver")
 
 
 def preload(modules: Sequence[str]) -> None:
