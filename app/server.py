@@ -68,6 +68,7 @@ from app.setting_fields import PREFIX
 from app.settings import Settings
 from app.stage.playback import Replays
 from app.stage.roles import Roles
+from app.storage.database.deletions import Deletions
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
@@ -297,7 +298,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         await services.features.open(opened)
         services.jobs.open()
         await asyncio.to_thread(_resume_interrupted, services)
-        purging = asyncio.create_task(_purge_deleted(services.jobs))
+        purging = asyncio.create_task(_purge_deleted(services.store.deletions))
         try:
             yield
         finally:
@@ -307,13 +308,13 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             await asyncio.to_thread(services.jobs.close)
 
 
-async def _purge_deleted(jobs: Jobs) -> None:
-    """Delete for good, every few minutes, the runs that can be restored no more."""
+async def _purge_deleted(deletions: Deletions) -> None:
+    """Delete for good, at once and every few minutes, what can be restored no more."""
     while True:
         try:
-            await asyncio.to_thread(jobs.purge)
+            await asyncio.to_thread(deletions.purge)
         except HexapodError as error:
-            _logger.warning("Deleted runs stay on the disk for now: %s", error)
+            _logger.warning("What was deleted stays on the disk for now: %s", error)
         await asyncio.sleep(_PURGE_EVERY_S)
 
 

@@ -4,7 +4,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import datetime
 from typing import Any
 
 from app.events.bus import EventBus
@@ -21,9 +21,7 @@ from app.storage.errors import (
     Busy,
     Conflict,
     NotAnswering,
-    NotFound,
     StorageFailed,
-    StorageFull,
 )
 from app.storage.recordings import Recordings
 from app.storage.run import (
@@ -54,8 +52,6 @@ MAX_PENDING_CHANGES = 8
 """Maximum number of changes that wait for acknowledgement at once; each blocks a thread."""
 MAX_CHANGES = 2_000
 """Maximum number of live changes of a run; each of its events has all of them."""
-RESTORABLE = timedelta(hours=1)
-"""For how long a run that was deleted can be restored."""
 _ACKNOWLEDGE_S = 5.0
 _KILL_S = 2.0
 _EXIT_S = 10.0
@@ -362,19 +358,12 @@ class Jobs:
             NotFound: if there is no such run.
             Conflict: if it has not ended, or a queued race needs its table.
         """
-        try:
-            self._store.check_disk_space()
-        except StorageFull:
-            self.delete(run_id)
-            self._store.purge(datetime.now(UTC))
-            return None
         self._await_process(run_id)
-        deleted_at = datetime.now(UTC)
         with self._changed:
             self._check_needed_by_none(self._store.find(run_id))
-            self._store.trash(run_id, deleted_at)
+            until = self._store.trash(run_id)
         self._forget(run_id)
-        return deleted_at + RESTORABLE
+        return until
 
     def restore(self, run_id: str) -> AnyRun:
         """Bring back a run that was deleted lately, and return it; one that is there stays.
@@ -382,18 +371,10 @@ class Jobs:
         Raises:
             NotFound: if there is no such run, or it was deleted too long ago.
         """
-        try:
-            with self._changed:
-                run = self._store.restore(run_id, datetime.now(UTC) - RESTORABLE)
-        except NotFound as error:
-            hours = RESTORABLE // timedelta(hours=1)
-            raise NotFound(f"{error}; what was deleted can be restored for {hours} h") from error
+        with self._changed:
+            run = self._store.restore(run_id)
         self._bus.publish_run(run)
         return run
-
-    def purge(self) -> int:
-        """Delete for good what can be restored no more; return the number of runs."""
-        return self._store.purge(datetime.now(UTC) - RESTORABLE)
 
     def delete(self, run_id: str) -> None:
         """Delete a run that has ended, at once and for good.

@@ -1,7 +1,9 @@
 """The resource `runs`: runs of every kind, listed, filtered, searched and found by id."""
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
+
+import pytest
 
 from tests.api.calls import Api, refused
 from tests.features.needing import needs
@@ -153,13 +155,16 @@ def test_a_run_that_was_deleted_is_nowhere_and_comes_back_as_it_was(api: Api) ->
     assert (again.status_code, again.json()) == (200, before[0]), "it is there already"
 
 
-def test_what_is_gone_for_good_is_told(api: Api) -> None:
+def test_what_is_gone_for_good_is_told(api: Api, monkeypatch: pytest.MonkeyPatch) -> None:
     refused(api.call("POST", "/runs/none/restore"), 404, "none", "can be restored for 1 h")
     run = api.finished(api.train(name="Heron, too late", steps=5, evaluate_every=0))
     answer = api.call("DELETE", f"/runs?id={run['id']}").json()
     assert answer["restorable_until"] > run["ended_at"]
     app: Any = api.client.app
-    app.state.services.store.purge(datetime.now(UTC))
+    deletions = app.state.services.store.deletions
+    with monkeypatch.context() as later:
+        later.setattr(deletions, "now", lambda: datetime.now(UTC) + timedelta(hours=2))
+        assert deletions.purge() > 0
     refused(api.call("POST", f"/runs/{run['id']}/restore"), 404, run["id"], "restored for 1 h")
 
 

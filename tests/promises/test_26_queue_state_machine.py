@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -222,7 +222,8 @@ def test_random_verbs_never_block_the_queue(launch: Callable[..., Served], tmp_p
     assert time.monotonic() - began < at_length(LONG_S, 10.0)
     # As the server does it an hour after a deletion.
     with open_store(Settings(data=tmp_path)) as store:
-        assert store.purge(datetime.now(UTC)) > 0
+        store.deletions.now = lambda: datetime.now(UTC) + timedelta(hours=2)
+        assert store.deletions.purge() > 0
     assert rows_and_files(tmp_path) == (0, 0)
 
 

@@ -143,4 +143,4 @@ def _new_database() -> bytes:
 
 def of_type(kind: type[StoreT], store: RunStore) -> StoreT:
     """Return a store of a subclass, for example one whose writes fail, on the same database."""
-    return kind(store.database, store.files, store.robots, store.kinds)
+    return kind(store.database, store.files, store.robots, store.deletions, store.kinds)

@@ -79,7 +79,10 @@ def test_artifact_of_a_deleted_run_is_not_stored(tmp_path: Path) -> None:
         folder = tmp_path / "slow"
         folder.mkdir()
         files = Slow(folder, DiskSpace(tmp_path))
-        store = RunStore(opened_store.database, files, opened_store.robots, opened_store.kinds)
+        database, robots, deletions, kinds = (
+            getattr(opened_store, name) for name in ("database", "robots", "deletions", "kinds")
+        )
+        store = RunStore(database, files, robots, deletions, kinds)
         store.create(training("a", state="finished"))
         with pytest.raises(NotFound, match="no run 'a'"):
             store.put_artifact("a", "q-table.npz", b"late")

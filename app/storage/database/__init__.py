@@ -3,7 +3,7 @@
 Start reading at `opening`, which opens the store of a server; `read_only` opens it for commands.
 
 - `store` is the `RunStore`; its parts are `artifact_rows`, `curves`, `baselines`, `keys` and
-  `progress`; `robots` are stored robots.
+  `progress`; `robots` are stored robots; `deletions` lets rows be restored for a while.
 - `schema` defines the tables, `columns` their types, `migration` and `migrations` upgrade them.
 - `queries` and `rows` read and decode rows of runs, `stored_rows` those of every other table,
   tolerating damaged ones; `listing` reads runs page by page.

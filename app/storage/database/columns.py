@@ -4,12 +4,14 @@ import math
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import JSON, DateTime, Dialect, String
+from sqlalchemy import JSON, Column, ColumnElement, DateTime, Dialect, String, Table, true
 from sqlalchemy.types import TypeDecorator
 
 from hexapods.domain.text import storable
 
 _NON_FINITE = "$float"
+DELETED_AT = "deleted_at"
+"""Name of the column of `deletion_time`."""
 
 
 class PortableText(TypeDecorator[str]):
@@ -107,3 +109,13 @@ def decode_json(value: Any) -> Any:
     if isinstance(value, list):
         return [decode_json(item) for item in value]
     return value
+
+
+def deletion_time() -> Column[datetime]:
+    """Return the column with the time of a row's deletion, while the row can still be restored."""
+    return Column(DELETED_AT, UtcTime)
+
+
+def not_deleted(table: Table) -> ColumnElement[bool]:
+    """Return the condition that a row was not deleted; of a table without deletion times true."""
+    return table.c[DELETED_AT].is_(None) if DELETED_AT in table.c else true()

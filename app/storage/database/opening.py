@@ -7,6 +7,7 @@ from pathlib import Path
 
 from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.artifacts import ArtifactFiles
+from app.storage.database.deletions import Deletions
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
@@ -65,10 +66,12 @@ def open_store(
                     _folder(settings.data / name, database_id)
                     for name in (ARTIFACTS_FOLDER, ROBOTS_FOLDER)
                 )
+                deletions = Deletions(database, disk_space)
                 store = RunStore(
                     database,
                     ArtifactFiles(files, disk_space),
                     RobotStore(database, robots, disk_space),
+                    deletions,
                     kinds_without(settings.without),
                 )
                 _recover(store)

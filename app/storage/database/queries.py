@@ -23,7 +23,13 @@ from sqlalchemy import (
     type_coerce,
 )
 
-from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
+from app.storage.database.columns import (
+    JsonWithNan,
+    PortableText,
+    TagList,
+    UtcTime,
+    not_deleted,
+)
 from app.storage.database.schema import NON_FIELD_COLUMNS, RUNS
 from app.storage.errors import NotFound
 
@@ -62,7 +68,7 @@ RAW_RUN = tuple(
 """Undecoded columns of a run, for SELECT and RETURNING; `rows.try_decode_run` decodes them."""
 
 
-NOT_DELETED = RUNS.c.deleted_at.is_(None)
+NOT_DELETED = not_deleted(RUNS)
 """Condition that a run was not deleted; one that was is in the table while it can be restored."""
 
 

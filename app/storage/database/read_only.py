@@ -11,6 +11,7 @@ from sqlalchemy.pool import NullPool, StaticPool
 
 from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.artifacts import ArtifactFiles
+from app.storage.database.deletions import Deletions
 from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
@@ -45,7 +46,8 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         files = ArtifactFiles(artifacts / name, disk_space)
         robots = RobotStore(database, settings.data / ROBOTS_FOLDER / name, disk_space)
         stack.enter_context(robots.known())
-        yield RunStore(database, files, robots, kinds_without(settings.without))
+        deletions = Deletions(database, disk_space)
+        yield RunStore(database, files, robots, deletions, kinds_without(settings.without))
 
 
 def _engine(settings: Settings) -> Engine:

@@ -12,7 +12,13 @@ from sqlalchemy import (
     false,
 )
 
-from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
+from app.storage.database.columns import (
+    JsonWithNan,
+    PortableText,
+    TagList,
+    UtcTime,
+    deletion_time,
+)
 
 METADATA = MetaData()
 
@@ -54,8 +60,7 @@ RUNS = Table(
     Column("created_at", UtcTime, nullable=False),
     Column("started_at", UtcTime),
     Column("ended_at", UtcTime),
-    # When it was deleted, while it can still be restored; all queries of runs leave it out then.
-    Column("deleted_at", UtcTime),
+    deletion_time(),
     Index("ix_runs_kind_id", "kind", "id"),
     Index("ix_runs_kind_state_id", "kind", "state", "id"),
     Index("ix_runs_state_id", "state", "id"),

@@ -10,7 +10,6 @@ from sqlalchemy import (
     Connection,
     String,
     Update,
-    and_,
     case,
     cast,
     delete,
@@ -28,6 +27,7 @@ from app.storage.database.artifact_rows import Artifacts
 from app.storage.database.baselines import StoredBaselines
 from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
+from app.storage.database.deletions import Deletions
 from app.storage.database.engine import Database
 from app.storage.database.keys import Keys
 from app.storage.database.listing import Listing, fetch_page
@@ -82,6 +82,7 @@ class RunStore:
         kinds: names of the kinds of runs that are not left out.
         keys: idempotency keys.
         robots: stored robots.
+        deletions: deletes rows so that they can be restored for a while.
         sessions: storage of operators' browser sessions, in the same database.
         is_public: condition that a run may be shown to everybody; None for all.
     """
@@ -91,9 +92,12 @@ class RunStore:
         database: Database,
         files: ArtifactFiles,
         robots: RobotStore,
+        deletions: Deletions,
         kinds: Collection[str],
     ) -> None:
         self.database, self.files, self.robots, self.kinds = database, files, robots, kinds
+        self.deletions = deletions
+        deletions.purges[RUNS.name] = self._purge
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)
         self.curves, self.keys = Curves(database), Keys(database)
@@ -165,7 +169,7 @@ class RunStore:
         """
         # A run that was deleted gives way to its import, which has its id.
         ids = [run.id for run, _ in imported]
-        self._purge(and_(RUNS.c.id.in_(ids), RUNS.c.deleted_at.is_not(None)))
+        self.deletions.purge_rows(RUNS, RUNS.c.id.in_(ids))
         stored: list[dict[str, StoredFile]] = [{} for _ in imported]
         was_submitted = False
         robots = [robot for _, content in imported for robot in content.robots]
@@ -374,53 +378,43 @@ class RunStore:
         self.files.remove(*self.database.write(work))
         self._progress.drop(run_id)
 
-    def trash(self, run_id: str, deleted_at: datetime) -> None:
+    def trash(self, run_id: str) -> datetime | None:
         """Delete an ended run so that it can be restored: all is kept, and nothing finds it.
 
-        Args:
-            run_id: id of the run.
-            deleted_at: the time, for `purge`.
+        Returns:
+            until when; None if it is gone at once, as the disk is full.
 
         Raises:
             NotFound: if there is no such run.
             Conflict: if it has not ended.
         """
 
-        def work(connection: Connection) -> None:
+        def rows(connection: Connection) -> ColumnElement[bool]:
             _check_ended(fetch_run_row(connection, run_id, for_update=True))
-            is_this_run = has_public_id(connection, run_id)
-            connection.execute(update(RUNS).where(is_this_run).values(deleted_at=deleted_at))
+            return has_public_id(connection, run_id)
 
-        self.database.write(work)
+        until = self.deletions.delete(RUNS, rows)
         self._progress.drop(run_id)
+        return until
 
-    def restore(self, run_id: str, deleted_since: datetime) -> AnyRun:
+    def restore(self, run_id: str) -> AnyRun:
         """Bring a run back that `trash` has deleted, and return it; one that is there stays.
-
-        Args:
-            run_id: id of the run.
-            deleted_since: a run that was deleted before stays deleted.
 
         Raises:
             NotFound: if there is no such run (any more), or a stored robot of it was deleted.
         """
 
-        def work(connection: Connection) -> Row:
-            is_this_run = has_public_id(connection, run_id)
-            is_restorable = RUNS.c.deleted_at >= deleted_since
-            back = update(RUNS).where(is_this_run, is_restorable).values(deleted_at=None)
-            connection.execute(back)
+        def fetch(connection: Connection) -> Row:
             row = fetch_run_row(connection, run_id)
             run = self._try_decode(row, {})
             if isinstance(run, Run):
                 self.robots.check(connection, robots_of(run.config))
             return row
 
-        return self._try_decode(self.database.write(work), {})
-
-    def purge(self, deleted_before: datetime) -> int:
-        """Delete the runs for good that `trash` has deleted before a time; return their number."""
-        return self._purge(RUNS.c.deleted_at < deleted_before)
+        row = self.deletions.restore(
+            RUNS, lambda connection: has_public_id(connection, run_id), fetch
+        )
+        return self._try_decode(row, {})
 
     def _purge(self, is_purged: ColumnElement[bool]) -> int:
         def work(connection: Connection) -> tuple[int, Sequence[str]]:
