@@ -32,18 +32,18 @@ class RacePage(Page):
 
 
 class KeptRun(Answer):
-    """A run that could not be deleted, and why."""
+    """A run that could not be deleted, and why; of other things that is an error."""
 
     id: str
     reason: str
 
 
 class DeletedView(Answer):
-    """Ids of the runs that were deleted, and those that could not be.
+    """Ids of what was deleted, and the runs that could not be.
 
     Attributes:
-        restorable_until: until when `POST /runs/{run_id}/restore` brings them all back; null where
-            one is gone for good.
+        restorable_until: until when `POST …/{id}/restore`, below the address of their list, brings
+            them all back; null where one is gone for good.
     """
 
     deleted: list[str]

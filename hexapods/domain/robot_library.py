@@ -36,6 +36,7 @@ class RobotLibrary:
         documents: documents in memory, by id.
         descriptions: data stored beside documents, by id.
         folders: folders with files of documents.
+        withdrawn: files in these folders that are not found, by folder and id.
     """
 
     def __init__(self, base: "RobotLibrary | None" = None, documents: Iterable[bytes] = ()) -> None:
@@ -50,11 +51,12 @@ class RobotLibrary:
         self.documents = {id_of(data): data for data in documents}
         self.descriptions: dict[str, About] = {}
         self.folders: list[Path] = []
+        self.withdrawn: set[tuple[Path, str]] = set()
         self._cached: dict[str, bytes] = {}
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
-            names = "_base", "documents", "descriptions", "folders"
+            names = "_base", "documents", "descriptions", "folders", "withdrawn"
             return {name: vars(self)[name] for name in names}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
@@ -73,6 +75,7 @@ class RobotLibrary:
             self.documents.update(other.documents)
             self.descriptions.update(other.descriptions)
             self.folders += other.folders
+            self.withdrawn |= other.withdrawn
 
     def describe(self, robot_id: str, about: About) -> None:
         """Set the data of a stored robot beside its document."""
@@ -91,6 +94,17 @@ class RobotLibrary:
                 for values in (self.documents, self._cached, self.descriptions):
                     values.pop(robot_id, None)
 
+    def withdraw(self, folder: Path, robot_ids: Collection[str]) -> None:
+        """Find robots of a folder no more, although their files stay."""
+        with self._lock:
+            self.withdrawn |= {(folder, robot_id) for robot_id in robot_ids}
+            self.forget(robot_ids)
+
+    def reinstate(self, folder: Path, robot_ids: Collection[str]) -> None:
+        """Find robots of a folder again that were withdrawn."""
+        with self._lock:
+            self.withdrawn -= {(folder, robot_id) for robot_id in robot_ids}
+
     def add_folder(self, folder: Path) -> None:
         """Add a folder with files of documents, which may be one folder deeper."""
         with self._lock:
@@ -100,6 +114,8 @@ class RobotLibrary:
         """Remove a folder; to be called once for each `add_folder`."""
         with self._lock:
             self.folders.remove(folder)
+            if folder not in self.folders:
+                self.withdrawn = {file for file in self.withdrawn if file[0] != folder}
 
     def find(self, robot_id: str, name: str | None = None) -> bytes:
         """Return the document of a stored robot.
@@ -132,6 +148,8 @@ class RobotLibrary:
     def _read(self, robot_id: str) -> bytes | None:
         """Return a document from the folders, and keep it among the last that were read."""
         for path in self._paths(robot_id):
+            if (path.parent, robot_id) in self.withdrawn:
+                continue
             try:
                 data = path.read_bytes()
             except OSError:  # it is not there, or not any more

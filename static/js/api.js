@@ -4,7 +4,7 @@ import { computed, effect, untracked } from "@preact/signals";
 /** @import { Signal } from "@preact/signals" */
 /** @import { Annotations, Curve, Curves, Disturbance } from "./types.js" */
 /** @import { Kind, Options } from "./types.js" */
-/** @import { DamagedRun, Page, Preview, Rates, ReplayPlan, Run, Stage } from "./types.js" */
+/** @import { Page, Preview, Rates, ReplayPlan, Run, Stage } from "./types.js" */
 /** @import { Timeline, Verb } from "./types.js" */
 
 /**
@@ -289,8 +289,6 @@ export const disturbTraining = (id, disturbance) =>
 
 /** @type {(run: RunKey, verb: Verb) => Promise<Run | null>} */
 export const command = (run, verb) => call("POST", `${pathOf(run)}/${verb}`);
-/** Bring back a run that was deleted. @type {(id: string) => Promise<Run | DamagedRun>} */
-export const restoreRun = (id) => call("POST", `runs/${encodeURIComponent(id)}/restore`);
 /** @type {(id: string, changes: Annotations) => Promise<Run>} */
 export const annotateRun = (id, changes) => call("PATCH", `runs/${encodeURIComponent(id)}`, changes);
 

@@ -2,7 +2,7 @@
 import { computed } from "@preact/signals";
 import { attempt } from "./actions.js";
 import * as api from "./api.js";
-import { deleteRuns } from "./deletions.js";
+import { deleteRuns } from "./run-deletions.js";
 import { listed } from "./format.js";
 import { page } from "./page-state.js";
 import { listedRuns } from "./run-list.js";

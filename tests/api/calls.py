@@ -46,6 +46,12 @@ class Api:
 
     client: TestClient
 
+    @property
+    def services(self) -> Any:
+        """Services of the server."""
+        app: Any = self.client.app
+        return app.state.services
+
     def call(self, method: str, path: str, **options: Any) -> httpx2.Response:
         return self.client.request(method, f"/api/v1{path}", **options)
 

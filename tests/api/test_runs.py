@@ -160,8 +160,7 @@ def test_what_is_gone_for_good_is_told(api: Api, monkeypatch: pytest.MonkeyPatch
     run = api.finished(api.train(name="Heron, too late", steps=5, evaluate_every=0))
     answer = api.call("DELETE", f"/runs?id={run['id']}").json()
     assert answer["restorable_until"] > run["ended_at"]
-    app: Any = api.client.app
-    deletions = app.state.services.store.deletions
+    deletions = api.services.store.deletions
     with monkeypatch.context() as later:
         later.setattr(deletions, "now", lambda: datetime.now(UTC) + timedelta(hours=2))
         assert deletions.purge() > 0

@@ -47,6 +47,24 @@ def test_two_libraries_with_different_robots_of_one_name_do_not_mix() -> None:
             from_json(WalkingProblem, to_json(config), context=library)
 
 
+def test_one_that_is_withdrawn_is_not_found_although_its_file_stays(tmp_path: Path) -> None:
+    folders = [tmp_path / name for name in ("first", "second")]
+    for folder in folders:
+        folder.mkdir()
+        (folder / f"{ID}.json").write_bytes(DOCUMENT)
+    library = RobotLibrary()
+    library.add_folder(tmp_path)
+    assert library.get(ID) == DOCUMENT
+    library.withdraw(folders[0], [ID])
+    assert library.get(ID) == DOCUMENT, "of the other folder"
+    library.withdraw(folders[1], [ID])
+    for copied in (library, pickle.loads(pickle.dumps(library))):
+        assert copied.get(ID) is None
+    assert RobotLibrary(library, documents=[DOCUMENT]).get(ID) == DOCUMENT
+    library.reinstate(folders[1], [ID])
+    assert library.get(ID) == DOCUMENT
+
+
 def test_documents_are_read_from_folders_and_checked(tmp_path: Path) -> None:
     (tmp_path / "database").mkdir()
     path = tmp_path / "database" / f"{ID}.json"

@@ -1,10 +1,10 @@
 // Undo of a deletion: offered in a message and in the list, over a reload of the page, until the server lets go.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { problems } from "../../static/js/actions.js";
-import { deleteRun, deleteRuns, deletions, forgetDeletion, restore } from "../../static/js/deletions.js";
+import { deletions, forgetDeletion, refusals, restore, tellDeleted } from "../../static/js/deletions.js";
 import { toastMessage } from "../../static/js/page.js";
-import { applyEvent, isGone, runs } from "../../static/js/store.js";
+import { deleteRun, deleteRuns } from "../../static/js/run-deletions.js";
+import { applyEvent, isGone, requestRun, runs } from "../../static/js/store.js";
 import { makeRun } from "./options.js";
 
 const HOUR_MS = 3600 * 1000;
@@ -51,7 +51,7 @@ test("several are restored together, and what was kept is told", async () => {
     : [200, all.find(({ id }) => path.includes(id)) ?? {}]));
   const { deleted, reasons } = await deleteRuns(all);
   assert.deepEqual([deleted, reasons, deletions.value[0].words], [ids.slice(0, 2), ["it runs"], "2 runs"]);
-  await restore(deletions.value[0]);
+  assert.equal(await restore(deletions.value[0], requestRun), true);
   assert.deepEqual(requests.slice(1), ids.slice(0, 2).map((id) => `POST runs/${id}/restore`));
 });
 
@@ -60,9 +60,9 @@ test("where it is too late, that is told and no more is offered", async () => {
   answerBy((method) => (method === "DELETE" ? [200, { deleted: [run.id], kept: [], restorable_until: inAnHour() }]
     : [404, { detail: "there is no run; what was deleted can be restored for 1 h" }]));
   await deleteRun(run);
-  await restore(deletions.value[0]);
+  await toastMessage.value?.action?.run();
   assert.match(toastMessage.value?.words ?? "", /restored for 1 h/);
-  assert.equal(problems.value.restore?.status, 404);
+  assert.match(refusals.value.runs, /restored for 1 h/);
   assert.deepEqual(deletions.value, []);
 });
 
@@ -75,4 +75,34 @@ test("nothing is offered of what is gone at once, nor once its time is over", as
   answerBy(() => [200, { deleted: [run.id], kept: [], restorable_until: new Date(Date.now() - 1).toISOString() }]);
   await deleteRun(run);
   assert.deepEqual(deletions.value, []);
+});
+
+test("of each kind the newest are offered, in their list alone where a dialog is above the message", () => {
+  const tell = (/** @type {string} */ kind, /** @type {string} */ id) =>
+    tellDeleted(kind, { deleted: [id], kept: [], restorable_until: inAnHour() }, id, null);
+  tell("robots", "Rex");
+  for (let number = 1; number <= 6; number += 1) tell("lessons", `Lesson ${number}`);
+  assert.equal(toastMessage.value, null);
+  assert.deepEqual(deletions.value.map(({ words }) => words).toSorted(),
+    ["Lesson 2", "Lesson 3", "Lesson 4", "Lesson 5", "Lesson 6", "Rex"]);
+});
+
+test("what stands in the way of an undo is told, and it can be tried again", async () => {
+  const taken = "there is a robot named 'Rex' by now; give that one another name, and restore this one again";
+  let status = 409;
+  let shown = 0;
+  answerBy(() => [status, { detail: taken }]);
+  tellDeleted("robots", { deleted: ["abc"], kept: [], restorable_until: inAnHour() }, "“Rex”", null);
+  const [deletion] = deletions.value;
+  const take = async (/** @type {() => Promise<unknown>} */ send) => {
+    await send();
+    shown += 1;
+  };
+  assert.equal(await restore(deletion, take), false);
+  assert.match(refusals.value.robots, /give that one another name/);
+  assert.deepEqual(deletions.value, [deletion]);
+  status = 200;
+  assert.equal(await restore(deletion, take), true);
+  assert.deepEqual(requests, ["POST robots/abc/restore", "POST robots/abc/restore"]);
+  assert.deepEqual([shown, refusals.value.robots, deletions.value], [1, "", []]);
 });

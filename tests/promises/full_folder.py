@@ -66,7 +66,7 @@ def fill(store: RunStore, copies: int) -> None:
     store.baselines.add(64 * "c", 0.5)
     Sessions(store.sessions, TOKEN).open()
     _add_robots(store, copies)
-    Lessons(LessonRows(store.database)).add(lesson("A lesson"))
+    Lessons(LessonRows(store)).add(lesson("A lesson"))
     code = _fill_rooms(store, copies)
     _fill_tournaments(store, code)
     created_at = store.get(OF_VISITOR).created_at

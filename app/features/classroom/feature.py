@@ -69,7 +69,7 @@ class Classroom(Feature):
     def __init__(self, core: Services) -> None:
         super().__init__(core)
         self.rooms = core.provide(Rooms(core.store))
-        self.lessons = core.provide(Lessons(LessonRows(core.store.database)))
+        self.lessons = core.provide(Lessons(LessonRows(core.store)))
         self.stages = core.provide(RoomStages(core.stages, core.new_stage))
         core.provide(CardStarts(core.agents))
         core.provide(WhatIfs(core.features.get("what_if")))
@@ -99,7 +99,7 @@ class Classroom(Feature):
     @classmethod
     def read_rows(cls, store: RunStore) -> None:
         Rooms(store)
-        Lessons(LessonRows(store.database)).all()
+        Lessons(LessonRows(store)).all()
 
     @asynccontextmanager
     async def open(self) -> AsyncIterator[None]:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from fastapi import Depends, Path, Query, Request
 from starlette.responses import Response
 
+from app.api.answers import DeletedView
 from app.api.contract import TEXT, answers
 from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.formats import attachment, negotiated
@@ -143,11 +144,22 @@ def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson,
     return replace(stored, lesson=replace(lesson, cards=cards, before=None, after=None)), True
 
 
-@router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
+@router.delete("/{lesson_id}", summary="Delete a stored lesson")
 @policy(access=OPERATOR)
-def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
-    """Delete a stored lesson; rooms that teach it keep their copy."""
-    services.of(Lessons).delete(lesson_id)
+def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> RecordResponse[DeletedView]:
+    """Delete a stored lesson; rooms that teach it keep their copy.
+
+    It can be restored for an hour, unless the disk is full.
+    """
+    until = services.of(Lessons).delete(lesson_id)
+    return RecordResponse(DeletedView(deleted=[lesson_id], kept=[], restorable_until=until))
+
+
+@router.post("/{lesson_id}/restore", summary="Restore a stored lesson that was deleted")
+@policy(access=OPERATOR)
+def restore_lesson(services: ServicesDep, lesson_id: LessonPath) -> RecordResponse[LessonView]:
+    """Bring back a lesson that was deleted within the last hour; one that is there stays."""
+    return RecordResponse(lesson_view(services.of(Lessons).restore(lesson_id)))
 
 
 def lesson_view(stored: FoundLesson, *, is_taught: bool = False) -> LessonView:

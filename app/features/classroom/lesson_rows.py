@@ -4,21 +4,27 @@ from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, delete, func, select
+from sqlalchemy import ColumnElement, Connection, func, select
 
 from app.features.classroom.tables import LESSONS
-from app.storage.database.engine import Database
-from app.storage.database.stored_rows import DecodedRows, put_rows, read_rows
+from app.storage.database.columns import not_deleted
+from app.storage.database.store import RunStore
+from app.storage.database.stored_rows import DecodedRows, put_rows, read_rows, rows_in
+from app.storage.errors import NotFound
 
 
 class LessonRows:
     """Reads and writes the lessons in a database."""
 
-    def __init__(self, database: Database) -> None:
-        self._database = database
+    def __init__(self, store: RunStore) -> None:
+        self._store, self._database = store, store.database
 
     def put(self, lesson_id: str, title: str, document: Mapping[str, Any], most: int) -> bool:
-        """Store a lesson, in the place of a damaged one of this id; False if there are too many."""
+        """Store a lesson, in the place of a damaged one of this id; False if there are too many.
+
+        Those that were deleted count, and give way.
+        """
+        self._store.deletions.make_room(LESSONS, most)
 
         def work(connection: Connection) -> bool:
             count = connection.execute(select(func.count()).select_from(LESSONS)).scalar_one()
@@ -41,7 +47,37 @@ class LessonRows:
         where = None if lesson_id is None else LESSONS.c.id == lesson_id
         return read_rows(self._database, LESSONS, decode, *order, where=where)
 
-    def delete(self, lesson_id: str) -> bool:
-        """Delete a lesson; whether there was one."""
-        statement = delete(LESSONS).where(LESSONS.c.id == lesson_id)
-        return self._database.write(lambda c: bool(c.execute(statement).rowcount))
+    def delete(self, lesson_id: str) -> datetime | None:
+        """Delete a lesson so that it can be restored for a while.
+
+        Returns:
+            until when; None if it is gone at once, as the disk is full.
+
+        Raises:
+            NotFound: if there is no stored lesson of this id.
+        """
+
+        def row(connection: Connection) -> ColumnElement[bool]:
+            is_it = LESSONS.c.id == lesson_id
+            query = select(LESSONS.c.id).where(is_it, not_deleted(LESSONS))
+            if connection.execute(query).first() is None:
+                raise NotFound(f"there is no stored lesson {lesson_id!r}; those built in stay")
+            return is_it
+
+        return self._store.deletions.delete(LESSONS, row)
+
+    def restore(self, lesson_id: str, decode: Callable[..., Any]) -> DecodedRows:
+        """Bring back a lesson that was deleted lately; return it as `read` does.
+
+        Raises:
+            NotFound: if there is no such lesson, or it was deleted too long ago.
+        """
+        is_it = LESSONS.c.id == lesson_id
+
+        def fetch(connection: Connection) -> DecodedRows:
+            rows = rows_in(connection, LESSONS, decode, where=is_it)
+            if not (rows.sound or rows.damaged):
+                raise NotFound(f"there is no stored lesson {lesson_id!r} (any more)")
+            return rows
+
+        return self._store.deletions.restore(LESSONS, lambda _: is_it, fetch)

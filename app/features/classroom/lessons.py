@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 from app.features.classroom.lesson import Lesson, plain, read_lesson
 from app.features.classroom.lesson_file import read_file
 from app.features.classroom.lesson_rows import LessonRows
+from app.storage.database.stored_rows import DecodedRows
 from app.storage.errors import Busy, NotFound
 
 MAX_LESSONS = 500
@@ -65,13 +67,7 @@ class Lessons:
         built_in_lesson = built_in().get(lesson_id)
         if built_in_lesson is not None:
             return FoundLesson(lesson_id, built_in_lesson, is_built_in=True)
-        rows = self._rows.read(_stored, lesson_id)
-        for row in rows.damaged:
-            raise NotFound(f"the lesson {lesson_id} is damaged: {row.damaged}; delete it")
-        if not rows.sound:
-            raise NotFound(f"there is no lesson {lesson_id!r}; GET /api/v1/lessons lists all")
-        stored: FoundLesson = rows.sound[0]
-        return stored
+        return _sound(self._rows.read(_stored, lesson_id), lesson_id)
 
     def all(self) -> list[FoundLesson]:
         """Return all lessons that can be read: the built-in ones, then the stored, newest first."""
@@ -81,14 +77,24 @@ class Lessons:
         ]
         return lessons + self._rows.read(_stored).sound
 
-    def delete(self, lesson_id: str) -> None:
-        """Delete a stored lesson; rooms that have it keep it.
+    def delete(self, lesson_id: str) -> datetime | None:
+        """Delete a stored lesson so that it can be restored; rooms that have it keep it.
+
+        Returns:
+            until when; None if it is gone at once, as the disk is full.
 
         Raises:
             NotFound: if there is no stored lesson of this id.
         """
-        if not self._rows.delete(lesson_id):
-            raise NotFound(f"there is no stored lesson {lesson_id!r}; those built in stay")
+        return self._rows.delete(lesson_id)
+
+    def restore(self, lesson_id: str) -> FoundLesson:
+        """Bring back a stored lesson that was deleted lately; one that is there stays.
+
+        Raises:
+            NotFound: if there is no such lesson, or it was deleted too long ago.
+        """
+        return _sound(self._rows.restore(lesson_id, _stored), lesson_id)
 
 
 @cache
@@ -98,6 +104,15 @@ def built_in() -> Mapping[str, Lesson]:
         path.stem: read_file(path.read_bytes(), path.name)
         for path in sorted(_FOLDER.glob("*.yaml"))
     }
+
+
+def _sound(rows: DecodedRows, lesson_id: str) -> FoundLesson:
+    for row in rows.damaged:
+        raise NotFound(f"the lesson {lesson_id} is damaged: {row.damaged}; delete it")
+    if not rows.sound:
+        raise NotFound(f"there is no lesson {lesson_id!r}; GET /api/v1/lessons lists all")
+    stored: FoundLesson = rows.sound[0]
+    return stored
 
 
 def _stored(**row: Any) -> FoundLesson:

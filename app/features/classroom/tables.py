@@ -2,7 +2,7 @@
 
 from sqlalchemy import BigInteger, Boolean, Column, ForeignKey, Index, MetaData, Table
 
-from app.storage.database.columns import JsonWithNan, PortableText, UtcTime
+from app.storage.database.columns import JsonWithNan, PortableText, UtcTime, deletion_time
 
 METADATA = MetaData()
 
@@ -13,6 +13,7 @@ LESSONS = Table(
     Column("title", PortableText, nullable=False),
     Column("document", JsonWithNan, nullable=False),
     Column("created_at", UtcTime, nullable=False),
+    deletion_time(),
 )
 
 ROOMS = Table(

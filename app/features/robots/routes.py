@@ -7,6 +7,7 @@ from pydantic import ConfigDict, Field
 from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import Response
 
+from app.api.answers import DeletedView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
 from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.fields import Body, Name
@@ -261,14 +262,28 @@ def change_robot(
     return RecordResponse(robot_view(changed))
 
 
-@router.delete(
-    "/{robot_id:robot}", status_code=204, summary="Delete a stored robot", name="delete_robot"
-)
+@router.delete("/{robot_id:robot}", summary="Delete a stored robot", name="delete_robot")
 @policy(access=OPERATOR)
-def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
-    """Delete a robot that no run uses; one that runs use can be hidden."""
-    services.store.robots.delete(robot_id)
+def delete_robot(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[DeletedView]:
+    """Delete a robot that no run uses; one that runs use can be hidden.
+
+    It can be restored for an hour, unless the disk is full; its name is free at once.
+    """
+    until = services.store.robots.delete(robot_id)
     services.publish_robots()
+    return RecordResponse(DeletedView(deleted=[robot_id], kept=[], restorable_until=until))
+
+
+@router.post("/{robot_id:robot}/restore", summary="Restore a stored robot that was deleted")
+@policy(access=OPERATOR)
+def restore_robot(services: ServicesDep, robot_id: RobotPath) -> RecordResponse[StoredRobotView]:
+    """Bring back a robot that was deleted within the last hour; one that is there stays.
+
+    409 is the answer while another robot has its name.
+    """
+    restored = services.store.robots.restore(robot_id)
+    services.publish_robots()
+    return RecordResponse(robot_view(restored))
 
 
 @router.get(

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Request
 from starlette.responses import Response
 
+from app.api.answers import DeletedView
 from app.api.budgeted_chunks import BudgetedChunks
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import Services, ServicesDep
@@ -145,11 +146,31 @@ def get_tournament_file(
     return attachment(chunks, MEDIA_TYPE, f"tournament-{tournament.id}.json")
 
 
-@router.delete("/{tournament_id}", status_code=204, summary="Delete a tournament")
+@router.delete("/{tournament_id}", summary="Delete a tournament")
 @policy(access=OPERATOR)
-def delete_tournament(services: ServicesDep, tournament_id: TournamentPath) -> None:
-    """Delete a tournament with its entries and their tables; judging it ends."""
-    services.of(Tournaments).delete(tournament_id)
+def delete_tournament(
+    services: ServicesDep, tournament_id: TournamentPath
+) -> RecordResponse[DeletedView]:
+    """Delete a tournament with its entries and their tables; judging it ends.
+
+    It can be restored for an hour, unless the disk is full.
+    """
+    until = services.of(Tournaments).trash(tournament_id)
+    return RecordResponse(DeletedView(deleted=[tournament_id], kept=[], restorable_until=until))
+
+
+@router.post("/{tournament_id}/restore", summary="Restore a tournament that was deleted")
+@policy(access=OPERATOR)
+def restore_tournament(
+    services: ServicesDep, request: Request, tournament_id: TournamentPath
+) -> RecordResponse[TournamentView]:
+    """Bring back a tournament that was deleted within the last hour; one that is there stays.
+
+    It goes on as it was: entries that are not judged yet are judged. 404 is the answer where a
+    stored robot of its rules was deleted too.
+    """
+    tournament = services.of(Tournaments).restore(tournament_id)
+    return RecordResponse(tournament_view(request, services, tournament, None))
 
 
 def entry_routes(agents: tuple[str, ...]) -> APIRouter:

@@ -9,7 +9,18 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import ColumnElement, Connection, Table, and_, delete, func, select, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    String,
+    Table,
+    and_,
+    cast,
+    delete,
+    func,
+    select,
+    update,
+)
 
 from app.features.tournaments.tables import (
     TOURNAMENT_ENTRIES,
@@ -17,8 +28,8 @@ from app.features.tournaments.tables import (
     TOURNAMENT_TABLES,
     TOURNAMENTS,
 )
-from app.storage.database.engine import Database
-from app.storage.database.stored_rows import put_rows, read_rows
+from app.storage.database.store import RunStore
+from app.storage.database.stored_rows import put_rows, read_rows, rows_in
 from app.storage.errors import NotFound
 from hexapods.domain.errors import DamagedFile
 
@@ -99,27 +110,47 @@ class TableRow(NamedTuple):
 class TournamentRows:
     """Reads and writes the tournaments in a database."""
 
-    def __init__(self, database: Database) -> None:
-        self._database = database
-        database.decoders[TOURNAMENT_TABLES.name] = _sound_table
+    def __init__(self, store: RunStore) -> None:
+        self._store, self._database = store, store.database
+        self._database.decoders[TOURNAMENT_TABLES.name] = _sound_table
 
-    def tournaments(self, decode: Callable[[TournamentRow], T]) -> list[T]:
-        """Return all sound tournaments, oldest first; what `decode` raises is damage."""
+    def tournaments(
+        self, decode: Callable[[TournamentRow], T], tournament: str | None = None
+    ) -> list[T]:
+        """Return all sound tournaments, oldest first, or one by its id.
+
+        What `decode` raises is damage.
+        """
         order = TOURNAMENTS.c.created_at, TOURNAMENTS.c.id
-        return self._read(TOURNAMENTS, lambda **row: decode(TournamentRow(**row)), *order)
+        where = None if tournament is None else TOURNAMENTS.c.id == tournament
+        return self._read(
+            TOURNAMENTS, lambda **row: decode(TournamentRow(**row)), *order, where=where
+        )
 
-    def entries(self, decode: Callable[[EntryRow], T]) -> list[T]:
-        """Return all sound entries, in the order of their numbers."""
+    def entries(self, decode: Callable[[EntryRow], T], tournament: str | None = None) -> list[T]:
+        """Return all sound entries, or those of a tournament, in the order of their numbers."""
         table = TOURNAMENT_ENTRIES
-        return self._read(table, lambda **row: decode(EntryRow(**row)), table.c.number)
+        where = _of(table, tournament)
+        return self._read(table, lambda **row: decode(EntryRow(**row)), table.c.number, where=where)
 
-    def judgements(self, decode: Callable[[JudgementRow], T]) -> list[T]:
-        """Return all sound judgements, in the order of their draws."""
+    def judgements(
+        self, decode: Callable[[JudgementRow], T], tournament: str | None = None
+    ) -> list[T]:
+        """Return all sound judgements, or those of a tournament, in the order of their draws."""
         table = TOURNAMENT_JUDGEMENTS
-        return self._read(table, lambda **row: decode(JudgementRow(**row)), table.c.draw)
+        where = _of(table, tournament)
+        return self._read(
+            table, lambda **row: decode(JudgementRow(**row)), table.c.draw, where=where
+        )
 
-    def _read(self, table: Table, decode: Callable[..., T], *order: ColumnElement[Any]) -> list[T]:
-        return read_rows(self._database, table, decode, *order).sound
+    def _read(
+        self,
+        table: Table,
+        decode: Callable[..., T],
+        *order: ColumnElement[Any],
+        where: ColumnElement[bool] | None,
+    ) -> list[T]:
+        return read_rows(self._database, table, decode, *order, where=where).sound
 
     def add(
         self,
@@ -188,8 +219,48 @@ class TournamentRows:
 
         self._database.write(work)
 
+    def trash(self, tournament: str) -> datetime | None:
+        """Delete a tournament so that it can be restored for a while; its other rows stay.
+
+        Returns:
+            until when; None if it is gone at once, as the disk is full.
+        """
+        return self._store.deletions.delete(TOURNAMENTS, lambda _: TOURNAMENTS.c.id == tournament)
+
+    def restore(
+        self,
+        tournament: str,
+        decode: Callable[[TournamentRow], T],
+        check: Callable[[T], object],
+    ) -> None:
+        """Bring back a tournament that was deleted lately, if a check passes in the transaction.
+
+        Args:
+            tournament: its id.
+            decode: returns a tournament; what it raises is damage.
+            check: checks the tournament; what it raises keeps it deleted.
+
+        Raises:
+            NotFound: if there is no such tournament, it was deleted too long ago, or a stored robot
+                of its rules was deleted, too.
+        """
+        is_it = TOURNAMENTS.c.id == tournament
+
+        def fetch(connection: Connection) -> None:
+            query = select(cast(TOURNAMENTS.c.rules, String)).where(is_it)
+            for rules in connection.execute(query).scalars():
+                self._store.robots.check_not_deleted(connection, rules)
+            rows = rows_in(
+                connection, TOURNAMENTS, lambda **row: decode(TournamentRow(**row)), where=is_it
+            )
+            if not rows.sound:
+                raise NotFound(f"there is no tournament {tournament[:40]!r} (any more)")
+            check(rows.sound[0])
+
+        self._store.deletions.restore(TOURNAMENTS, lambda _: is_it, fetch)
+
     def delete(self, tournament: str) -> None:
-        """Delete a tournament with all that belongs to it."""
+        """Delete a tournament with all that belongs to it, at once and for good."""
         statement = delete(TOURNAMENTS).where(TOURNAMENTS.c.id == tournament)
         self._database.write(lambda connection: connection.execute(statement))
 
@@ -218,6 +289,10 @@ def _sound_table(**row: str) -> TableRow:
     if hashlib.sha256(base64.b64decode(table.data, validate=True)).hexdigest() != table.sha256:
         raise ValueError("data: it is not what entered")
     return table
+
+
+def _of(table: Table, tournament: str | None) -> ColumnElement[bool] | None:
+    return None if tournament is None else table.c.tournament == tournament
 
 
 def _is(tournament: str, sha256: str) -> Any:

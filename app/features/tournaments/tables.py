@@ -2,7 +2,7 @@
 
 from sqlalchemy import BigInteger, Boolean, Column, Double, ForeignKey, MetaData, Table
 
-from app.storage.database.columns import JsonWithNan, PortableText, UtcTime
+from app.storage.database.columns import JsonWithNan, PortableText, UtcTime, deletion_time
 
 METADATA = MetaData()
 
@@ -22,6 +22,7 @@ TOURNAMENTS = Table(
     Column("outcome", JsonWithNan),
     Column("created_at", UtcTime, nullable=False),
     Column("ended_at", UtcTime),
+    deletion_time(),
 )
 
 

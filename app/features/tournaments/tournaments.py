@@ -11,7 +11,8 @@ import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
 from app.features.tournaments.rows import EntryRow, JudgementRow, TournamentRow, TournamentRows
 from app.features.tournaments.tournament import (
@@ -43,6 +44,7 @@ MAX_ROBOTS_BYTES = 8 << 20
 """Limit on the size of the documents of all stored robots of the rules, which the file contains."""
 _RETRY_S = 60
 _SECRET = re.compile("[0-9a-f]{64}")
+T = TypeVar("T")
 
 
 class Entered(NamedTuple):
@@ -79,7 +81,7 @@ class Tournaments:
         Raises:
             StorageFailed: if they cannot be read.
         """
-        self._store, self._rows = store, TournamentRows(store.database)
+        self._store, self._rows = store, TournamentRows(store)
         self.now, self._new_secret = now, new_secret
         self.on_changed = on_changed
         self.changed = threading.Condition(threading.RLock())
@@ -87,23 +89,31 @@ class Tournaments:
         self._tournaments: dict[str, Tournament] = {}
         self._load()
 
-    def _load(self) -> None:
-        loaded = self._rows.tournaments(_tournament)
-        self._tournaments = {tournament.id: tournament for tournament in loaded}
-        for tournament_id, number in self._rows.numbers():
-            tournament = self._tournaments.get(tournament_id)
-            if tournament is not None and 0 <= number < MAX_NUMBER:
-                tournament.next_number = max(tournament.next_number, number + 1)
-        for tournament_id, entry in self._rows.entries(lambda row: (row.tournament, _entry(row))):
-            if tournament_id in self._tournaments:
-                self._tournaments[tournament_id].entries[entry.number] = entry
-        for row, judgement in self._rows.judgements(self._judgement):
-            tournament = self._tournaments.get(row.tournament)
-            if tournament is not None and row.number in tournament.entries:
-                tournament.entries[row.number].judgements[row.draw] = judgement
+    def _load(self, tournament_id: str | None = None) -> None:
+        """Load all tournaments, or one by its id."""
+        loaded = self._rows.tournaments(_tournament, tournament_id)
+        new = {tournament.id: tournament for tournament in loaded}
+        for owner, number in self._rows.numbers():
+            if owner in new and 0 <= number < MAX_NUMBER:
+                new[owner].next_number = max(new[owner].next_number, number + 1)
+        entries = self._rows.entries(lambda row: (row.tournament, _entry(row)), tournament_id)
+        for owner, entry in entries:
+            if owner in new:
+                new[owner].entries[entry.number] = entry
+        judgements = self._rows.judgements(partial(self._judgement, new), tournament_id)
+        for row, judgement in judgements:
+            if row.tournament in new and row.number in new[row.tournament].entries:
+                new[row.tournament].entries[row.number].judgements[row.draw] = judgement
+        tournaments = (self._tournaments | new).values()
+        oldest_first = sorted(
+            tournaments, key=lambda tournament: (tournament.created_at, tournament.id)
+        )
+        self._tournaments = {tournament.id: tournament for tournament in oldest_first}
 
-    def _judgement(self, row: JudgementRow) -> tuple[JudgementRow, Judgement]:
-        tournament = self._tournaments.get(row.tournament)
+    def _judgement(
+        self, new: Mapping[str, Tournament], row: JudgementRow
+    ) -> tuple[JudgementRow, Judgement]:
+        tournament = new.get(row.tournament) or self._tournaments.get(row.tournament)
         if tournament is not None and not 0 <= row.draw < tournament.rules.draws:
             raise ValueError("draw: it is none of the tournament")
         return row, Judgement(row.distance_m, row.failure)
@@ -175,13 +185,7 @@ class Tournaments:
         entries, robots = references(rules), (rules.robot, *rules.robots)
         self._check_robots(robots)
         with self.changed:
-            if (
-                sum(tournament_.state != "ended" for tournament_ in self._tournaments.values())
-                >= MAX_OPEN
-            ):
-                raise Busy(
-                    f"{MAX_OPEN} tournaments have not ended, which is the most; end one", _RETRY_S
-                )
+            self._check_may_open("end one")
             now = self.now()
             row = TournamentRow(
                 id=secrets.token_hex(8),
@@ -297,18 +301,65 @@ class Tournaments:
         self._tell(tournament)
         return tournament
 
-    def delete(self, tournament_id: str) -> None:
-        """Delete a tournament; what is judged of it is given up.
+    def trash(self, tournament_id: str) -> datetime | None:
+        """Delete a tournament so that it can be restored; its running judgements are cancelled.
+
+        Returns:
+            until when; None if it is gone at once, as the disk is full.
 
         Raises:
             NotFound: if there is no such tournament.
         """
+        return self._delete(tournament_id, self._rows.trash)
+
+    def delete(self, tournament_id: str) -> None:
+        """Delete a tournament at once and for good; its running judgements are cancelled.
+
+        Raises:
+            NotFound: if there is no such tournament.
+        """
+        self._delete(tournament_id, self._rows.delete)
+
+    def _delete(self, tournament_id: str, delete: Callable[[str], T]) -> T:
         with self.changed:
             tournament = self.get(tournament_id)
-            self._rows.delete(tournament.id)
+            result = delete(tournament.id)
             del self._tournaments[tournament.id]
             self.changed.notify_all()
         self.on_changed(tournament, True)
+        return result
+
+    def restore(self, tournament_id: str) -> Tournament:
+        """Bring back a tournament that was deleted lately; what is missing of it is judged.
+
+        One that is there stays.
+
+        Raises:
+            NotFound: if there is no such tournament, it was deleted too long ago, or a stored robot
+                of its rules was deleted.
+            Busy: if it has not ended, and too many others have not.
+        """
+        with self.changed:
+            if (there := self._tournaments.get(tournament_id)) is not None:
+                return there
+
+            def check(restored: Tournament) -> None:
+                if restored.state != "ended":
+                    self._check_may_open("end one, and restore this one again")
+
+            self._rows.restore(tournament_id, _tournament, check)
+            self._load(tournament_id)
+            tournament = self.get(tournament_id)
+            self.changed.notify_all()
+        self._tell(tournament)
+        return tournament
+
+    def _check_may_open(self, advice: str) -> None:
+        going_on = [tournament for tournament in self.all() if tournament.state != "ended"]
+        if len(going_on) >= MAX_OPEN:
+            raise Busy(
+                f"{MAX_OPEN} tournaments have not ended, which is the most; {advice}", _RETRY_S
+            )
 
     def table(self, tournament: Tournament, sha256: str) -> str:
         """Return a table that has entered, in base64.
@@ -337,15 +388,19 @@ class Tournaments:
             if not self.is_waiting(tournament.id, number):
                 return  # withdrawn, or deleted
             self._rows.add_judgement(row)
+            # The tournament may have been deleted and restored since.
+            tournament = self.get(tournament.id)
             tournament.entries[number].judgements[draw] = judgement
         self._tell(tournament)
 
     def rank(self, tournament: Tournament, standings: Sequence[RankedEntry]) -> None:
-        """Set the standings, unless newer ones are there already."""
+        """Set the standings, unless newer ones are there already, or the tournament is deleted."""
         with self.changed:
-            if len(standings) >= len(tournament.standings):
-                tournament.standings = tuple(standings)
-        self._tell(tournament)
+            if (current := self._tournaments.get(tournament.id)) is None:
+                return
+            if len(standings) >= len(current.standings):
+                current.standings = tuple(standings)
+        self._tell(current)
 
     def finish(self, tournament: Tournament, outcome: Mapping[str, Any]) -> None:
         """Note that a tournament has ended, with its outcome in JSON.
@@ -354,7 +409,7 @@ class Tournaments:
             NotFound: if the tournament was deleted.
         """
         with self.changed:
-            self.get(tournament.id)
+            tournament = self.get(tournament.id)
             now = self.now()
             changes = {"state": "ended", "outcome": outcome, "ended_at": now}
             self._rows.change(tournament.id, changes)

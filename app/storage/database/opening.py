@@ -70,7 +70,7 @@ def open_store(
                 store = RunStore(
                     database,
                     ArtifactFiles(files, disk_space),
-                    RobotStore(database, robots, disk_space),
+                    RobotStore(database, robots, disk_space, deletions),
                     deletions,
                     kinds_without(settings.without),
                 )

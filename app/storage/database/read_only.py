@@ -44,9 +44,9 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         disk_space, artifacts = DiskSpace(settings.data), settings.data / ARTIFACTS_FOLDER
         name = id_of_files(database_id, artifacts) or "none"
         files = ArtifactFiles(artifacts / name, disk_space)
-        robots = RobotStore(database, settings.data / ROBOTS_FOLDER / name, disk_space)
-        stack.enter_context(robots.known())
         deletions = Deletions(database, disk_space)
+        robots = RobotStore(database, settings.data / ROBOTS_FOLDER / name, disk_space, deletions)
+        stack.enter_context(robots.known())
         yield RunStore(database, files, robots, deletions, kinds_without(settings.without))
 
 

@@ -7,11 +7,27 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Column, Connection, String, cast, delete, func, or_, select, update
+from sqlalchemy import (
+    Column,
+    ColumnElement,
+    Connection,
+    String,
+    cast,
+    delete,
+    func,
+    inspect,
+    or_,
+    select,
+    true,
+    update,
+)
 
+from app.storage.database.columns import DELETED_AT, not_deleted
+from app.storage.database.deletions import Deletions
 from app.storage.database.engine import Database
 from app.storage.database.rows import forget_configs
 from app.storage.database.schema import ROBOTS, RUNS
@@ -53,22 +69,28 @@ class RobotStore:
     """Stores robots. Thread-safe.
 
     A document is written before its row, and deleted after it: a crash leaves at most a file
-    without a row, which the next start deletes.
+    without a row, which the next start deletes. A robot that is deleted keeps row and files while
+    it can be restored; its name is free at once.
 
     Attributes:
         users: columns of one table that may name robots, by the noun of its rows.
         version: version of the list of robots; a greater one after each change.
     """
 
-    def __init__(self, database: Database, folder: Path, disk_space: DiskSpace) -> None:
+    def __init__(
+        self, database: Database, folder: Path, disk_space: DiskSpace, deletions: Deletions
+    ) -> None:
         """Use the `robots` table of a database, and a folder for the files.
 
         Args:
             database: database with the table.
             folder: folder for these files alone; must exist before the first write.
             disk_space: checked before each write.
+            deletions: deletes robots so that they can be restored for a while.
         """
         self._database, self._folder, self._disk_space = database, folder, disk_space
+        self._deletions = deletions
+        deletions.purges[ROBOTS.name] = self._purge
         # Lock of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
         self.users: dict[str, Sequence[Column[Any]]] = {"run": (RUNS.c.config, RUNS.c.result)}
@@ -81,6 +103,7 @@ class RobotStore:
         LIBRARY.add_folder(self._folder)
         try:
             self._describe(self.stored(hidden=True))
+            LIBRARY.withdraw(self._folder, self._database.read(_deleted_ids))
             yield
         finally:
             LIBRARY.remove_folder(self._folder)
@@ -190,13 +213,17 @@ class RobotStore:
             yield []
             return
         with self.lock:
+            # One that was deleted gives way to the same robot.
+            ids = [robot.id for robot, _ in robots]
+            self._deletions.purge_rows(ROBOTS, ROBOTS.c.id.in_(ids))
             names, new = self._names(), dict[str, tuple[StoredRobot, bytes]]()
-            ids = {robot.id for robot in self.stored(hidden=True)}
+            stored = {robot.id for robot in self.stored(hidden=True)}
             for robot, document in robots:
-                if robot.id not in (*ids, *new):
+                if robot.id not in (*stored, *new):
                     named = replace(robot, name=distinct_name(robot.name, names))
                     names.append(named.name)
                     new[robot.id] = named, document
+            self._deletions.make_room(ROBOTS, MAX_ROBOTS, len(new))
             try:
                 for robot, document in new.values():
                     self._write_files(robot.id, document, origin)
@@ -250,7 +277,20 @@ class RobotStore:
         """
         for robot in robots:
             if robot.id is not None:
+                self.check_not_deleted(connection, robot.id)
                 _fetch(connection, robot.id)
+
+    def check_not_deleted(self, connection: Connection, text: str) -> None:
+        """Check within a transaction that a text, such as a config in JSON, names no deleted robot.
+
+        What names one cannot be decoded, and so tells no robots for `check`.
+
+        Raises:
+            NotFound: if it names one that can still be restored.
+        """
+        for robot_id in _deleted_ids(connection):
+            if robot_id in text:
+                raise NotFound(f"the robot {robot_id} was deleted: restore it first")
 
     def change(self, robot_id: str, **fields: Any) -> StoredRobot:
         """Change fields that are stored beside a robot's document, and return the robot.
@@ -317,15 +357,18 @@ class RobotStore:
             self._describe(self.stored(hidden=True))
             return self.get(about.id)
 
-    def delete(self, robot_id: str) -> None:
-        """Delete a robot; also one whose row is damaged.
+    def delete(self, robot_id: str) -> datetime | None:
+        """Delete a robot so that it can be restored for a while; also one whose row is damaged.
+
+        Returns:
+            until when; None if it is gone at once, as the disk is full.
 
         Raises:
             NotFound: if there is no such robot.
             Conflict: if runs, or something else, use it.
         """
 
-        def work(connection: Connection) -> None:
+        def row(connection: Connection) -> ColumnElement[bool]:
             rows, users = _rows(connection, robot_id), self._users_of(connection, robot_id)
             if not (rows.sound or rows.damaged):
                 raise _not_here(robot_id)
@@ -338,13 +381,45 @@ class RobotStore:
                     f"or delete {f'that {noun}' if count == 1 else f'those {noun}s'} first",
                     "hidden" if is_hidden else "used",
                 )
-            connection.execute(delete(ROBOTS).where(ROBOTS.c.id == robot_id))
+            return ROBOTS.c.id == robot_id
 
         with self.lock:
-            self._database.write(work)
-            self._remove_files(robot_id)
-            LIBRARY.forget([robot_id])
+            until = self._deletions.delete(ROBOTS, row)
+            LIBRARY.withdraw(self._folder, [robot_id])
             self._changed()
+        return until
+
+    def restore(self, robot_id: str) -> StoredRobot:
+        """Bring a robot back that was deleted lately, and return it; one that is there stays.
+
+        Raises:
+            NotFound: if there is no such robot, or it was deleted too long ago.
+            Conflict: if another robot has its name by now.
+        """
+        with self.lock:
+            names = self._names(robot_id)
+
+            def fetch(connection: Connection) -> StoredRobot:
+                robot = _fetch(connection, robot_id)
+                if distinct_name(robot.name, names) != robot.name:
+                    raise Conflict(
+                        f"there is a robot named {robot.name!r} by now; give that one another "
+                        "name, and restore this one again",
+                        "name",
+                    )
+                return robot
+
+            robot = self._deletions.restore(ROBOTS, lambda _: ROBOTS.c.id == robot_id, fetch)
+            self._describe([robot])
+            return robot
+
+    def _purge(self, is_purged: ColumnElement[bool]) -> int:
+        statement = delete(ROBOTS).where(is_purged).returning(ROBOTS.c.id)
+        with self.lock:
+            ids = self._database.write(lambda c: c.execute(statement).scalars().all())
+            for robot_id in filter(is_id, ids):
+                self._remove_files(robot_id)
+        return len(ids)
 
     def delete_orphans(self) -> int:
         """Delete files without a row, and unfinished ones; only safe before the first write.
@@ -366,6 +441,7 @@ class RobotStore:
 
     def _describe(self, robots: Iterable[StoredRobot]) -> None:
         for robot in robots:
+            LIBRARY.reinstate(self._folder, [robot.id])
             LIBRARY.describe(robot.id, robot.about)
             self._described.add(robot.id)
         self._changed()
@@ -383,10 +459,10 @@ class RobotStore:
         counts = {}
         for noun, columns in self.users.items():
             named = (cast(column, String).contains(robot_id) for column in columns)
-            query = select(func.count()).select_from(columns[0].table).where(or_(*named))
-            if columns[0].table is RUNS:
-                # One that is restored later is refused without its robot.
-                query = query.where(RUNS.c.deleted_at.is_(None))
+            table = columns[0].table
+            # A row that is restored later is refused without its robot.
+            is_user = or_(*named) & _is_there(connection, table)
+            query = select(func.count()).select_from(table).where(is_user)
             counts[noun] = int(connection.execute(query).scalar_one())
         return {noun: count for noun, count in counts.items() if count}
 
@@ -417,6 +493,21 @@ def _fetch(connection: Connection, robot_id: str) -> StoredRobot:
         raise _not_here(robot_id)
     robot: StoredRobot = rows.sound[0]
     return robot
+
+
+def _is_there(connection: Connection, table: Any) -> ColumnElement[bool]:
+    """Return the condition that a row of a table was not deleted.
+
+    The table of a feature that is left out may be one of an earlier version, without that column.
+    """
+    names = {column["name"] for column in inspect(connection).get_columns(table.name)}
+    return not_deleted(table) if DELETED_AT in names else true()
+
+
+def _deleted_ids(connection: Connection) -> list[str]:
+    """Return the ids of the robots that were deleted, and can still be restored."""
+    query = select(ROBOTS.c.id).where(ROBOTS.c[DELETED_AT].is_not(None))
+    return [robot_id for robot_id in connection.execute(query).scalars() if is_id(robot_id)]
 
 
 def _rows(connection: Connection, robot_id: str) -> DecodedRows:

@@ -137,4 +137,5 @@ ROBOTS = Table(
     Column("choices", JsonWithNan),
     Column("file", PortableText),
     Column("created_at", UtcTime, nullable=False),
+    deletion_time(),
 )

@@ -401,14 +401,12 @@ class RunStore:
         """Bring a run back that `trash` has deleted, and return it; one that is there stays.
 
         Raises:
-            NotFound: if there is no such run (any more), or a stored robot of it was deleted.
+            NotFound: if there is no such run (any more), or a stored robot of it was deleted, too.
         """
 
         def fetch(connection: Connection) -> Row:
             row = fetch_run_row(connection, run_id)
-            run = self._try_decode(row, {})
-            if isinstance(run, Run):
-                self.robots.check(connection, robots_of(run.config))
+            self.robots.check_not_deleted(connection, f"{row['config']} {row['result']}")
             return row
 
         row = self.deletions.restore(

@@ -2,7 +2,8 @@
 
 SQLite columns may hold values of any type, and other versions may have written the database. So no
 row is decoded by the query: each is, column by column, by the types of the schema, and then as what
-it stands for. One that cannot be is left out, and logged; `damaged_rows` returns all of them.
+it stands for. One that cannot be is left out, and logged; `damaged_rows` returns all of them. Rows
+that were deleted, and can still be restored, are left out, too.
 """
 
 import json
@@ -32,12 +33,14 @@ from sqlalchemy.sql.elements import ColumnElement
 from sqlalchemy.types import NullType
 
 from app.storage.database.columns import (
+    DELETED_AT,
     JsonWithNan,
     PortableText,
     TagList,
     UtcTime,
     decode_json,
     decode_tags,
+    not_deleted,
 )
 from app.storage.database.engine import Database
 from app.storage.database.queries import MAX_CELL_CHARS
@@ -96,8 +99,9 @@ def read_rows(
     Args:
         database: where the table is.
         table: the table.
-        decode: returns what a row stands for; its arguments are the columns. Whatever it raises,
-            the row is damaged. `damaged_rows` uses it from then on.
+        decode: returns what a row stands for; its arguments are the columns, without the time of
+            its deletion. Whatever it raises, the row is damaged. `damaged_rows` uses it from then
+            on.
         order: by what they are sorted.
         where: condition of those that are read; None for all.
     """
@@ -113,14 +117,14 @@ def read_rows(
 
 
 def damaged_rows(database: Database, table: Table) -> list[DamagedRow]:
-    """Return the damaged rows of a table, also those that belong to nothing.
+    """Return the damaged rows of a table, also those that belong to nothing, or were deleted.
 
     What a row stands for is checked where this process has read the table before.
     """
     decode = database.decoders.get(table.name, Values)
 
     def work(connection: Connection) -> list[DamagedRow]:
-        damaged = rows_in(connection, table, decode, keeps_sound=False).damaged
+        damaged = rows_in(connection, table, decode, keeps_sound=False, with_deleted=True).damaged
         for column in table.c:
             for reference in column.foreign_keys:
                 parent = reference.column
@@ -140,17 +144,22 @@ def rows_in(
     *order: ColumnElement[Any],
     where: ColumnElement[bool] | None = None,
     keeps_sound: bool = True,
+    with_deleted: bool = False,
 ) -> DecodedRows:
     """Return the rows of a table within a transaction; arguments as of `read_rows`.
 
-    Of tables that may have very many rows only the damaged ones can be kept.
+    Of tables that may have very many rows only the damaged ones can be kept. Rows that were deleted
+    are among them where that is wanted.
     """
     query = select(*map(_undecoded, table.c)).order_by(*order)
+    if not with_deleted:
+        query = query.where(not_deleted(table))
     if where is not None:
         query = query.where(where)
     rows = DecodedRows([], [])
     for row in connection.execute(query.execution_options(yield_per=_ROWS_AT_ONCE)).mappings():
         values, reasons = _decoded_columns(table, row)
+        values.pop(DELETED_AT, None)
         if not reasons:
             try:
                 decoded = decode(**values)

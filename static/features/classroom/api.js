@@ -1,6 +1,7 @@
 // Lessons and rooms over the REST API.
 import { addressOf, call, roomAddressOf, start } from "../../js/api.js";
 
+/** @import { Deleted } from "../../js/api.js" */
 /** @import { Classroom, Clock, Joined, LessonDocument, LessonList, LessonView } from "../../js/types.js" */
 /** @import { NewLesson, NewRoom } from "../../js/types.js" */
 /** @import { QTable, Results, Run, TeachingState, WhatIfAnswer } from "../../js/types.js" */
@@ -20,7 +21,7 @@ export const addLessonFile = (file) => {
   const type = /\.json$/i.test(file.name) ? "application/json" : YAML;
   return call("POST", "lessons", new Blob([file], { type }), { "Content-Type": type });
 };
-/** @type {(id: string) => Promise<null>} */
+/** @type {(id: string) => Promise<Deleted>} */
 export const deleteLesson = (id) => call("DELETE", `lessons/${encodeURIComponent(id)}`);
 /** Where the file of a lesson is. @param {string} id */
 export const lessonFile = (id) => addressOf(`lessons/${encodeURIComponent(id)}?format=yaml`);

@@ -1,7 +1,7 @@
 // The known experiments, and the chosen one: its address, summary and pace, and the actions on it.
 import { computed, effect, signal } from "@preact/signals";
 import { attempt } from "../../js/actions.js";
-import { deleteRun } from "../../js/deletions.js";
+import { deleteRun } from "../../js/run-deletions.js";
 import * as api from "../../js/api.js";
 import { askForNewest } from "../../js/api.js";
 import { getSummary, startExperiment } from "./api.js";

@@ -1,11 +1,13 @@
 // Stored robots: saved under a name, renamed, hidden, deleted, and taken in from files.
 import { computed, signal } from "@preact/signals";
 import { call, getOptions } from "../../js/api.js";
+import { tellDeleted } from "../../js/deletions.js";
 import { chooseRobot, form } from "../../js/form.js";
 import { setEntry, options, served } from "../../js/store.js";
 import { messageOf } from "../../js/titles.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { Take } from "../../js/deletions.js" */
 /** @import { GaitConfig, Robot, RobotConfig, StoredRobot } from "../../js/types.js" */
 
 /**
@@ -64,9 +66,17 @@ export const changeRobot = (id, changes) => change(id, () => call("PATCH", pathO
 /** Choose a stored robot. @param {string} id */
 export const chooseStored = (id) => chooseRobot(id);
 
+/** Take in a robot that is restored. @type {Take} */
+export const takeRestored = async (ask) => {
+  await ask();
+  await refresh();
+};
+
 /** A robot that the form has is replaced by the default one when it is deleted. @param {string} id */
 export const deleteRobot = (id) => change(id, async () => {
-  await call("DELETE", pathOf(id));
+  const { title = id } = storedRobots.peek().find((robot) => robot.id === id) ?? {};
+  // Its dialog is above the message.
+  tellDeleted("robots", await call("DELETE", pathOf(id)), `“${title}”`, null);
   if (form.peek().robot === id) chooseRobot(served().robots[0].name);
 });
 

@@ -1,6 +1,7 @@
 // Tournaments over the REST API.
 import { addressOf, call, start } from "../../js/api.js";
 
+/** @import { Deleted } from "../../js/api.js" */
 /** @import { Tournament, TournamentEntry, TournamentList } from "../../js/types.js" */
 
 /** @param {string} id */
@@ -16,7 +17,7 @@ export const getTournament = (id) => call("GET", pathOf(id));
 export const enter = (id, entry) => start(`${pathOf(id)}/entries`, entry);
 /** @type {(id: string, withdraw_waiting: boolean) => Promise<Tournament>} */
 export const endTournament = (id, withdraw_waiting) => call("POST", `${pathOf(id)}/end`, { withdraw_waiting });
-/** @type {(id: string) => Promise<null>} */
+/** @type {(id: string) => Promise<Deleted>} */
 export const deleteTournament = (id) => call("DELETE", pathOf(id));
 /** Where the file of a tournament is, once it has ended. @param {string} id */
 export const fileOf = (id) => addressOf(`${pathOf(id)}/file`);

@@ -10,6 +10,7 @@ import { served } from "../../js/store.js";
 import * as api from "./api.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { Take } from "../../js/deletions.js" */
 /** @import { Parsed } from "../../js/parse.js" */
 /** @import { ListedRoom, ListedTournament, Tournament } from "../../js/types.js" */
 
@@ -37,6 +38,12 @@ export const refresh = () => perform("list", async () => {
   const all = await call("GET", "rooms");
   rooms.value = all.items.filter((/** @type {ListedRoom} */ { state }) => state !== "ended");
 });
+
+/** Take in a tournament that is restored. @type {Take} */
+export const takeRestored = async (send) => {
+  await send();
+  await refresh();
+};
 
 /** Show the list. */
 export function showList() {

@@ -1,6 +1,7 @@
 // Entry point of a tournament's page: of entrants and watchers, of its operator, or for the projector.
 import { effect } from "@preact/signals";
 import { render } from "preact";
+import { Deletions } from "../../js/components/deletions.js";
 import { html, Icon } from "../../js/components/elements.js";
 import { Loaded } from "../../js/features.js";
 import { codeInGroups } from "../../js/format.js";
@@ -10,7 +11,9 @@ import { Enter } from "./enter.js";
 import { Operator } from "./operator.js";
 import { Ranking } from "./ranking.js";
 import { stateInWords } from "./states.js";
-import { announcement, follow, isProjector, shownTournament, refusal, tournament } from "./tournament.js";
+import {
+  announcement, follow, id, isProjector, shownTournament, refusal, takeRestored, tournament,
+} from "./tournament.js";
 import { rulesInWords, walkInWords } from "./words.js";
 
 function Page() {
@@ -34,6 +37,7 @@ const Closed = () => html`
     <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
     <h1>${refusal.value?.status === 404 ? "No tournament here" : "Not open to you"}</h1>
     <p role="alert">${refusal.value?.message}</p>
+    <${Deletions} kind="tournaments" id=${id} take=${takeRestored} />
     <a class="secondary as-button" href="../">Go to the dashboard</a>
   </main>
 `;

@@ -84,7 +84,10 @@ function EndDialog() {
 const DeleteDialog = () => html`
   <${Dialog} isOpen=${deleteIsOpen} id="delete-dialog" labelledBy="delete-title">
     <h2 id="delete-title">Delete the tournament?</h2>
-    <p>Its entries, their tables and the result are deleted here. A file that was downloaded stays.</p>
+    <p>
+      Its entries, their tables and the result are deleted here; for an hour that can be undone. A file that was
+      downloaded stays.
+    </p>
     <${Failure} name="delete" />
     <div class="row">
       <button class="danger" disabled=${busy.value.delete} onClick=${remove}>Delete the tournament</button>

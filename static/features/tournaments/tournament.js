@@ -1,7 +1,8 @@
 // The tournament of this page as signals: what the server tells who asks, kept by its events, and what can be done.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { addressOf, getOptions, roomAddressOf } from "../../js/api.js";
-import { goTo, ownAddress } from "../../js/page-state.js";
+import { ownAddress } from "../../js/page-state.js";
+import { tellDeleted } from "../../js/deletions.js";
 import { makeRequests } from "../../js/requests.js";
 import { debounce } from "../../js/debounce.js";
 import { openEvents } from "../../js/events.js";
@@ -10,6 +11,7 @@ import * as api from "./api.js";
 import { entryInWords, nameOf, shortened } from "./words.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
+/** @import { Take } from "../../js/deletions.js" */
 /** @import { RequestError } from "../../js/api.js" */
 /** @import { Tournament, TournamentEntry } from "../../js/types.js" */
 
@@ -69,8 +71,14 @@ export const shownStandings = computed(() => {
 
 // ---- reading
 
-const LASTING = [401, 403, 404];
+const NOT_FOUND = 404;
+const LASTING = [401, 403, NOT_FOUND];
 const AGAIN_MS = 1500;
+
+/** The tournament as the server answered last, also after its deletion. @type {Tournament | null} */
+let lastAnswer = null;
+/** Followed while it is deleted, too: it may be restored. */
+const followed = computed(() => tournament.value ?? (refusal.value?.status === NOT_FOUND ? lastAnswer : null));
 
 /** Ask for the tournament anew; true if the server has answered. */
 export async function refresh() {
@@ -79,6 +87,7 @@ export async function refresh() {
     batch(() => {
       announceJudged(tournament.peek(), answer);
       tournament.value = answer;
+      lastAnswer = answer;
       refusal.value = null;
     });
     return true;
@@ -124,8 +133,8 @@ export async function follow() {
   await refresh();
   // Participants hear of it by the events of their room, all others by those of the server.
   const stream = computed(() => {
-    if (tournament.value === null || tournament.value.state === "ended") return "";
-    const { room, is_operator } = tournament.value;
+    if (followed.value === null || followed.value.state === "ended") return "";
+    const { room, is_operator } = followed.value;
     return room && !is_operator ? addressOf(`rooms/${encodeURIComponent(room)}/events`) : addressOf("events");
   });
   effect(() => {
@@ -133,7 +142,7 @@ export async function follow() {
       connection.value = "live";
       return undefined;
     }
-    const { room, is_operator } = tournament.peek() ?? {};
+    const { room, is_operator } = followed.peek() ?? {};
     const snapshot = room && !is_operator ? roomAddressOf(room, "events/snapshot") : addressOf("events/snapshot");
     return openEvents(["snapshot", "tournament", "room"], onEvent, onState,
       () => ({ stream: stream.peek(), snapshot }));
@@ -171,7 +180,15 @@ export const end = (isWaitingDropped) => perform("end", async () => {
   tournament.value = await api.endTournament(id, isWaitingDropped);
 });
 
+/** Delete the tournament; the page tells then that it can be restored. */
 export const remove = () => perform("delete", async () => {
-  await api.deleteTournament(id);
-  goTo("../");
+  const { title } = shownTournament();
+  tellDeleted("tournaments", await api.deleteTournament(id), `“${title}”`, null);
+  await refresh();
 });
+
+/** Take in the tournament that is restored. @type {Take} */
+export const takeRestored = async (send) => {
+  await send();
+  await refresh();
+};

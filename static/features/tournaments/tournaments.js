@@ -1,9 +1,10 @@
 // The dialog of tournaments: their list, and for operators the form of a new one.
+import { Deletions } from "../../js/components/deletions.js";
 import { html, Dialog, Icon } from "../../js/components/elements.js";
 import { ago, codeInGroups, shortAddress } from "../../js/format.js";
 import { copy } from "../../js/page.js";
 import { isOperator } from "../../js/selectors.js";
-import { failures, isNew, isOpen, opened, ownRoom, showForm, showList, tournaments } from "./list.js";
+import { failures, isNew, isOpen, opened, ownRoom, showForm, showList, takeRestored, tournaments } from "./list.js";
 import { stateInWords, tournamentPage } from "./states.js";
 import { entriesInWords } from "./words.js";
 import { NewTournamentForm } from "./new-tournament.js";
@@ -35,6 +36,7 @@ function List() {
       Learners and searchers are entered, and judged by the server on secret seeds and worlds.
     </p>
     <div role="alert">${failures.value.list && html`<p class="problem">${failures.value.list}</p>`}</div>
+    <${Deletions} kind="tournaments" take=${takeRestored} />
     ${all === null && !failures.value.list && html`<p role="status">Loading the tournaments…</p>`}
     ${all?.length === 0 && html`<p>There is none yet.</p>`}
     ${all !== null && all.length > 0 && html`

@@ -109,6 +109,16 @@ def test_a_lesson_that_is_taught_hides_its_question_from_all_but_operators(schoo
     lesson = stranger.get(f"/lessons/{lesson_id}")
     assert lesson["is_taught"]
     assert (lesson["before"], lesson["minutes"], lesson["ages"]) == (None, 20, "from 12")
+    # The room goes on with its copy while the lesson is deleted, and hides it once it is back.
+    shown = school.teacher.get(f"/rooms/{code}")
+    assert school.teacher.call("DELETE", f"/lessons/{lesson_id}").status_code == 200
+    refused(stranger.call("GET", f"/lessons/{lesson_id}"), 404, "no lesson")
+    assert school.teacher.get(f"/rooms/{code}")["lesson"] == shown["lesson"]
+    assert school.teacher.call("PUT", f"/rooms/{code}/card", json={"card": 1}).status_code == 200
+    school.teacher.call("PUT", f"/rooms/{code}/card", json={"card": 0})
+    refused(stranger.call("POST", f"/lessons/{lesson_id}/restore"), 401)
+    assert school.teacher.call("POST", f"/lessons/{lesson_id}/restore").status_code == 200
+    assert stranger.get(f"/lessons/{lesson_id}") == lesson
     school.teacher.call("POST", f"/rooms/{code}/end")
     listed = school.teacher.get("/lessons")["items"]
     (entry,) = [item for item in listed if item["id"] == lesson_id]

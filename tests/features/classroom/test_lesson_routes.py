@@ -1,12 +1,15 @@
 """Lessons over REST: stored, listed and exported, and what is refused with which sentence."""
 
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
 
+from app.features.classroom import lessons
 from app.features.classroom.lesson import MAX_CARDS, html_of, read_lesson
 from app.features.classroom.lesson_file import MAX_BYTES, read_file, write_file
 from app.features.classroom.lessons import built_in
+from app.features.classroom.tables import LESSONS
 from tests.api.calls import Api, refused
 
 YAML = {"Content-Type": "application/yaml"}
@@ -55,16 +58,60 @@ def test_a_lesson_is_the_same_as_json_and_as_a_file(api: Api) -> None:
     listed = {entry["id"]: entry for entry in api.get("/lessons")["items"]}
     assert listed[lesson_id]["cards"] == 2
     assert api.client.get(f"/l/{lesson_id}").url.query == f"lesson={lesson_id}".encode()
-    assert api.call("DELETE", f"/lessons/{lesson_id}").status_code == 204
+    assert api.call("DELETE", f"/lessons/{lesson_id}").status_code == 200
     refused(api.call("GET", f"/lessons/{lesson_id}"), 404, "no lesson")
 
 
+def test_a_lesson_that_was_deleted_comes_back_for_an_hour(
+    api: Api, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lesson_id = api.call("POST", "/lessons", json=LESSON).json()["id"]
+    path = f"/lessons/{lesson_id}"
+    before = api.get(path), api.get("/lessons")
+    deleted = api.call("DELETE", path).json()
+    assert (deleted["deleted"], deleted["kept"]) == ([lesson_id], [])
+    assert datetime.fromisoformat(deleted["restorable_until"]) > datetime.now(UTC)
+    refused(api.call("GET", path), 404, "no lesson")
+    refused(api.call("DELETE", path), 404, "no stored lesson")
+    refused(api.call("POST", "/rooms", json={"lesson": lesson_id}), 404, "no lesson")
+    assert lesson_id not in [entry["id"] for entry in api.get("/lessons")["items"]]
+    for _ in range(2):
+        restored = api.call("POST", f"{path}/restore")
+        assert (restored.status_code, restored.json()) == (200, before[0])
+    assert (api.get(path), api.get("/lessons")) == before
+
+    api.call("DELETE", path)
+    assert api.call("POST", "/lessons", json=LESSON).json()["id"] == lesson_id, "stored again"
+    assert api.call("POST", f"{path}/restore").json() == before[0]
+    api.call("DELETE", path)
+    deletions = api.services.store.deletions
+    monkeypatch.setattr(deletions, "now", lambda: datetime.now(UTC) + timedelta(hours=2))
+    assert deletions.purge() >= 1
+    refused(api.call("POST", f"{path}/restore"), 404, "can be restored for 1 h")
+    refused(api.call("POST", f"/lessons/{next(iter(built_in()))}/restore"), 404, "no stored lesson")
+
+
+def test_the_most_lessons_are_counted_with_those_that_were_deleted(
+    api: Api, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    api.services.store.deletions.purge_rows(LESSONS, LESSONS.c.id != "")
+    stored = [entry for entry in api.get("/lessons")["items"] if not entry["is_built_in"]]
+    monkeypatch.setattr(lessons, "MAX_LESSONS", len(stored) + 1)
+    first, second = ({**LESSON, "title": title} for title in ("The first", "The second"))
+    lesson_id = api.call("POST", "/lessons", json=first).json()["id"]
+    refused(api.call("POST", "/lessons", json=second), 429, "delete one")
+    api.call("DELETE", f"/lessons/{lesson_id}")
+    other_id = api.call("POST", "/lessons", json=second).json()["id"]
+    refused(api.call("POST", f"/lessons/{lesson_id}/restore"), 404, "restored for 1 h")
+    api.call("DELETE", f"/lessons/{other_id}")
+
+
 def test_built_in_lessons_can_be_started_and_exported(api: Api) -> None:
-    lessons = built_in()
+    all_built_in = built_in()
     listed = {entry["id"] for entry in api.get("/lessons")["items"] if entry["is_built_in"]}
-    assert listed == set(lessons)
+    assert listed == set(all_built_in)
     assert len(listed) >= 2
-    for lesson_id, lesson in lessons.items():
+    for lesson_id, lesson in all_built_in.items():
         assert read_file(write_file(lesson).encode(), lesson_id) == lesson
         assert lesson.aims
         file = api.call("GET", f"/lessons/{lesson_id}?format=yaml").content

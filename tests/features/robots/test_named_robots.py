@@ -34,4 +34,4 @@ def test_a_table_that_is_missing_names_no_robot(tmp_path: Path) -> None:
     with running(Settings(data=tmp_path, without=("tournaments",))) as api:
         body = {"robot": {"preset": "dog", "femur_m": 0.09}}
         robot_id = api.call("POST", "/robots", json=body).json()["id"]
-        assert api.call("DELETE", f"/robots/{robot_id}").status_code == 204
+        assert api.call("DELETE", f"/robots/{robot_id}").status_code == 200

@@ -4,6 +4,7 @@ import contextlib
 import io
 import json
 from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -112,9 +113,50 @@ def test_it_is_chosen_by_its_id_alone_or_changed(api: Api, rex: dict[str, Any]) 
     assert refused(answer, 409, "3 runs use Rex", "hide it instead")["state"] == "used"
     for user in (run, race, same):
         api.call("DELETE", f"/{user['kind']}s/{user['id']}")
-    assert api.call("DELETE", f"/robots/{rex['id']}").status_code == 204
+    assert api.call("DELETE", f"/robots/{rex['id']}").status_code == 200
     refused(api.call("GET", f"/robots/{rex['id']}"), 404, "no robot")
     refused(api.call("POST", "/trainings", json={**walk, "robot": {"id": rex["id"]}}), 422)
+
+
+def test_one_that_was_deleted_comes_back_for_an_hour(api: Api, rex: dict[str, Any]) -> None:
+    robots = api.services.store.robots
+    path, version = f"/robots/{rex['id']}", robots.version
+    deleted = api.call("DELETE", path).json()
+    assert (deleted["deleted"], deleted["kept"]) == ([rex["id"]], [])
+    assert datetime.fromisoformat(deleted["restorable_until"]) > datetime.now(UTC)
+    for hidden in (path, f"{path}/file"):
+        refused(api.call("GET", hidden), 404, "no robot")
+    refused(api.call("PATCH", path, json={"hidden": True}), 404, "no robot")
+    refused(api.call("DELETE", path), 404, "no robot")
+    assert api.get("/robots?hidden=true")["items"] == []
+    assert rex["id"] not in [robot["id"] for robot in api.get("/options")["robots"]]
+
+    for _ in range(2):
+        restored = api.call("POST", f"{path}/restore")
+        assert (restored.status_code, restored.json()) == (200, rex)
+    assert api.get("/robots")["items"] == [rex]
+    assert robots.version > version + 1
+    run = api.finished(api.train(gait="trot", robot={"id": rex["id"]}, steps=1))
+    assert run["config"]["robot"] == {"id": rex["id"], "name": "Rex"}
+    api.call("DELETE", f"/trainings/{run['id']}")
+    refused(api.call("POST", f"/robots/{'0' * 16}/restore"), 404, "can be restored for 1 h")
+
+
+def test_what_stands_in_the_way_of_an_undo_is_told(
+    api: Api, rex: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = f"/robots/{rex['id']}"
+    api.call("DELETE", path)
+    other = api.call("POST", "/robots", json={"name": "rex", "robot": {"preset": "dog"}}).json()
+    advice = "give that one another name, and restore this one again"
+    refused(api.call("POST", f"{path}/restore"), 409, "named 'Rex' by now", advice)
+    api.call("PATCH", f"/robots/{other['id']}", json={"name": "Max"})
+    assert api.call("POST", f"{path}/restore").json() == rex
+    api.call("DELETE", f"/robots/{other['id']}")
+    api.call("DELETE", path)
+    deletions = api.services.store.deletions
+    monkeypatch.setattr(deletions, "now", lambda: datetime.now(UTC) + timedelta(hours=2))
+    refused(api.call("POST", f"{path}/restore"), 404, "can be restored for 1 h")
 
 
 def _trained(run: dict[str, Any]) -> list[dict[str, Any]]:
@@ -200,7 +242,7 @@ def test_a_name_is_taken_once_and_made_up_if_none_is_given(api: Api, rex: dict[s
     second = store(api, robot={**BODY, "femur_m": 0.0932}).json()
     assert (first["name"], second["name"]) == ("Robot", "Robot 2")
     for stored in (first, second):
-        assert api.call("DELETE", f"/robots/{stored['id']}").status_code == 204
+        assert api.call("DELETE", f"/robots/{stored['id']}").status_code == 200
 
 
 def test_a_file_that_is_too_large_is_refused(api: Api) -> None:
@@ -235,7 +277,7 @@ def test_spectators_read_and_do_not_write(serve: Callable[..., Api]) -> None:
     assert api.call("GET", f"{path}/file").status_code == 200
     refused(api.call("PATCH", path, json={"hidden": True}), 401)
     refused(api.call("DELETE", path), 401)
-    assert api.call("DELETE", path, **operator).status_code == 204
+    assert api.call("DELETE", path, **operator).status_code == 200
 
 
 @needs("archives")

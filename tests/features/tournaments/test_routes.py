@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
@@ -13,6 +14,7 @@ from starlette.testclient import TestClient
 from app.api.deps import Services
 from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
+from app.features.tournaments import tournaments
 from app.features.tournaments.response_models import (
     EntryView,
     TournamentList,
@@ -392,7 +394,7 @@ def test_robots_of_the_rules_are_in_the_file(school: Contest) -> None:
     refused(teacher.call("DELETE", f"/robots/{rex}"), 409, "A tournament uses Rex")
     data = teacher.call("GET", f"/tournaments/{tournament['id']}/file").content
     teacher.call("DELETE", f"/tournaments/{tournament['id']}")
-    assert teacher.call("DELETE", f"/robots/{rex}").status_code == 204
+    assert teacher.call("DELETE", f"/robots/{rex}").status_code == 200
     file = read_file(data, "file")
     assert list(file.robots) == [rex]
     assert verify(file, workers=1) == []
@@ -413,11 +415,64 @@ def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
     endless = school.open(rules=IN_MUJOCO | {"steps": 200, "draws": 100})
     school.until(endless, lambda view: view["entries"][0]["judged"] > 0)
     path = f"/tournaments/{endless['id']}"
-    assert school.teacher.call("DELETE", path).status_code == 204
+    assert school.teacher.call("DELETE", path).status_code == 200
     refused(school.teacher.call("GET", path), 404, "no tournament")
     refused(school.teacher.call("DELETE", path), 404)
-    # The judge goes on with others.
+    # The judge goes on with others, and with this one once it is restored.
     assert school.ended(school.open())["state"] == "ended"
+    restored = school.teacher.call("POST", f"{path}/restore")
+    assert restored.status_code == 200
+    judged = restored.json()["entries"][0]["judged"]
+    assert judged > 0, "what was judged before is kept"
+    school.until(endless, lambda view: view["entries"][0]["judged"] > judged)
+    school.teacher.call("DELETE", path)
+
+
+def test_one_that_was_deleted_comes_back_for_an_hour(
+    school: Contest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teacher, tournament = school.teacher, school.ended(school.open())
+    others = [teacher.call("POST", "/tournaments", json={"rules": RULES}).json() for _ in "ab"]
+    path = f"/tournaments/{tournament['id']}"
+    ids = [entry["id"] for entry in teacher.get("/tournaments")["items"]]
+    assert ids == [others[1]["id"], others[0]["id"], tournament["id"]]
+    file = teacher.call("GET", f"{path}/file").content
+    deleted = teacher.call("DELETE", path).json()
+    assert (deleted["deleted"], deleted["kept"]) == ([tournament["id"]], [])
+    assert datetime.fromisoformat(deleted["restorable_until"]) > datetime.now(UTC)
+    refused(teacher.call("GET", f"{path}/file"), 404, "no tournament")
+    for _ in range(2):
+        restored = teacher.call("POST", f"{path}/restore")
+        assert (restored.status_code, restored.json()) == (200, tournament)
+    assert [entry["id"] for entry in teacher.get("/tournaments")["items"]] == ids
+    assert teacher.call("GET", f"{path}/file").content == file
+    refused(school.pupil().call("POST", f"{path}/restore"), 401)
+
+    teacher.call("DELETE", path)
+    deletions = school.app.state.services.store.deletions
+    monkeypatch.setattr(deletions, "now", lambda: datetime.now(UTC) + timedelta(hours=2))
+    refused(teacher.call("POST", f"{path}/restore"), 404, "can be restored for 1 h")
+    refused(teacher.call("POST", "/tournaments/none/restore"), 404, "no tournament 'none'")
+
+
+def test_what_stands_in_the_way_of_an_undo_is_told(
+    school: Contest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teacher = school.teacher
+    body = {"name": "Rex", "robot": {"preset": "dog", "femur_m": 0.0933}}
+    rex = teacher.call("POST", "/robots", json=body).json()["id"]
+    tournament = school.open(rules={"gait": "trot", "robots": [{"id": rex}]})
+    path = f"/tournaments/{tournament['id']}"
+    teacher.call("DELETE", path)
+    assert teacher.call("DELETE", f"/robots/{rex}").status_code == 200, "nothing uses it now"
+    refused(teacher.call("POST", f"{path}/restore"), 404, "was deleted: restore it first")
+    teacher.call("POST", f"/robots/{rex}/restore")
+    with monkeypatch.context() as full:
+        full.setattr(tournaments, "MAX_OPEN", 0)
+        refused(teacher.call("POST", f"{path}/restore"), 429, "end one, and restore this one again")
+    assert teacher.call("POST", f"{path}/restore").json()["state"] == "open"
+    teacher.call("DELETE", path)
+    teacher.call("DELETE", f"/robots/{rex}")
 
 
 def test_events_tell_of_it_on_the_common_stage_and_the_rooms(school: Contest) -> None:

@@ -58,6 +58,39 @@ def judged(tournaments: Tournaments, tournament: Tournament, number: int) -> Non
         tournaments.keep(tournament, number, draw, Judgement(0.1 * draw))
 
 
+def test_one_that_was_deleted_comes_back_as_it_was(store: RunStore) -> None:
+    tournaments = Tournaments(store)
+    first = opened_one(tournaments)
+    second = opened_one(tournaments)
+    tournaments.enter(first.id, ONE, practised(0.25))
+    tournaments.keep(first, 3, 1, Judgement(0.5))
+    assert tournaments.trash(first.id) is not None
+    assert tournaments.all() == Tournaments(store).all() == [second]
+    assert not tournaments.is_waiting(first.id, 3)
+    # The judgement of a draw that was under way is dropped.
+    tournaments.keep(first, 3, 2, Judgement(0.75))
+    tournaments.rank(first, [])
+    for again in (tournaments, Tournaments(store)):
+        assert again.restore(first.id) == first
+        assert again.all() == [first, second]
+    # One that ends after the tournament is back is kept of that one.
+    tournaments.keep(first, 3, 0, Judgement(0.25))
+    assert tournaments.get(first.id).entries[3].judgements == {
+        0: Judgement(0.25),
+        1: Judgement(0.5),
+    }
+    assert Tournaments(store).get(first.id) == tournaments.get(first.id)
+    assert tournaments.get(first.id).next_number == 4
+
+
+def test_a_tournament_that_was_left_behind_is_deleted_for_good(store: RunStore) -> None:
+    tournaments = Tournaments(store)
+    left = tournaments.create(RULES, "", "AAAA", 6)
+    tournaments.delete_left_behind(tournaments.now(), [])
+    with pytest.raises(NotFound, match="can be restored for 1 h"):
+        tournaments.restore(left.id)
+
+
 def test_tournaments_are_restored_after_a_restart(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = opened_one(tournaments)

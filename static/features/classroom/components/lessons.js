@@ -1,10 +1,13 @@
 // The view of lessons: those of the server, and the editor of the one that is being made.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect } from "preact/hooks";
 import { lessonFile } from "../api.js";
 import { wantDialog } from "../../../js/features.js";
-import { askForRoom, edit, importFile, lessonInWords, lessons, problem, refresh, remove } from "../lessons/list.js";
+import {
+  askForRoom, edit, importFile, lessonInWords, lessons, problem, refresh, remove, takeRestored,
+} from "../lessons/list.js";
 import { begin, draft } from "../lessons/draft.js";
 import { isOperator } from "../../../js/selectors.js";
+import { Deletions } from "../../../js/components/deletions.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { Editor } from "./editor.js";
 
@@ -35,6 +38,7 @@ function List() {
       </div>
       <p class="dim">Cards that a class goes through together in a room, or that a link opens on this page.</p>
       <div role="alert">${problem.value && html`<p class="problem">${problem}</p>`}</div>
+      <${Deletions} kind="lessons" take=${takeRestored} />
       ${all === null ? !problem.value && html`<p role="status">Loading the lessons…</p>` : html`
         <ul>${all.map((lesson) => html`<${Row} key=${lesson.id} lesson=${lesson} />`)}</ul>
       `}
@@ -58,8 +62,6 @@ function ImportButton() {
 /** @param {{ lesson: ListedLesson }} props */
 function Row({ lesson }) {
   const { id, title, aims, is_built_in } = lesson;
-  const [willDelete, setWillDelete] = useState(false);
-  const deleteWords = willDelete ? "Really delete" : "Delete";
   return html`
     <li>
       <h3>${title}</h3>
@@ -81,8 +83,7 @@ function Row({ lesson }) {
         `}
         <a class="quiet button" href=${lessonFile(id)} download="" aria-label=${`YAML file: ${title}`}>YAML</a>
         ${isOperator.value && !is_built_in && html`
-          <button class=${willDelete ? "danger" : "quiet"} aria-label=${`${deleteWords}: ${title}`}
-            onClick=${() => (willDelete ? remove(id) : setWillDelete(true))}>${deleteWords}</button>
+          <button class="quiet" onClick=${() => remove(id, title)} aria-label=${`Delete: ${title}`}>Delete</button>
         `}
       </div>
     </li>

@@ -2,10 +2,12 @@
 import { signal } from "@preact/signals";
 import * as api from "../api.js";
 import { call } from "../../../js/api.js";
+import { tellDeleted } from "../../../js/deletions.js";
 import { count } from "../../../js/format.js";
 import { begin, discard, documentOf, draft, toSend } from "./draft.js";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { Take } from "../../../js/deletions.js" */
 /** @import { RequestError } from "../../../js/api.js" */
 /** @import { ListedLesson, ListedRoom, NewLesson, NewRoom } from "../../../js/types.js" */
 
@@ -77,9 +79,15 @@ export const importFile = (file) => perform(async () => {
   await refresh();
 });
 
-/** @param {string} id */
-export const remove = (id) => perform(async () => {
-  await api.deleteLesson(id);
+/** Take in a lesson that is restored. @type {Take} */
+export const takeRestored = async (send) => {
+  await send();
+  await refresh();
+};
+
+/** @type {(id: string, title: string) => Promise<void>} */
+export const remove = (id, title) => perform(async () => {
+  tellDeleted("lessons", await api.deleteLesson(id), `“${title}”`, takeRestored);
   if (saved.peek()?.id === id) saved.value = null;
   await refresh();
 });

@@ -4,9 +4,11 @@ import { robotsAreOpen } from "../dialogs.js";
 import { isOperator } from "../../../js/selectors.js";
 import {
   changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken,
+  takeRestored,
 } from "../stored-robots.js";
 import { takeDropped, takeFolder, takeRobotFiles } from "../dropped-files.js";
 import { openStored } from "../reading.js";
+import { Deletions } from "../../../js/components/deletions.js";
 import { contentsOf } from "../../../js/components/dropping.js";
 import { Dialog, html, Icon } from "../../../js/components/elements.js";
 import { Notes } from "./notes.js";
@@ -25,6 +27,7 @@ export const StoredRobots = () => html`
     <div class="robots-main">
       ${isOperator.value && html`<${FromFile} />`}
       ${taken.value.map((file) => html`<${Taken} key=${file.key} one=${file} />`)}
+      <${Deletions} kind="robots" take=${takeRestored} />
       ${storedRobots.value.length
         ? html`<ul class="robots-list">
             ${storedRobots.value.map((robot) => html`<${Stored} key=${robot.id} robot=${robot} />`)}

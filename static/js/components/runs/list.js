@@ -1,14 +1,13 @@
 // The list: what all of it has on top, its groups with their notes, and what it says where there is nothing.
 import { useEffect, useRef } from "preact/hooks";
-import { pending } from "../../actions.js";
-import { deletions, forgetDeletion, restore } from "../../deletions.js";
-import { count, shortTime } from "../../format.js";
+import { count } from "../../format.js";
 import { COLUMNS, shownColumns } from "../../run-columns.js";
 import {
   clearFilters, filters, isFiltered, knownTags, listedRuns, runGroups, runList, setFilters,
 } from "../../run-list.js";
 import { clearSelection, selectAll, selected, setSelected } from "../../run-selection.js";
-import { connection } from "../../store.js";
+import { connection, requestRun } from "../../store.js";
+import { Deletions } from "../deletions.js";
 import { html } from "../elements.js";
 import { Slot } from "../../features.js";
 import { RunRow } from "./row.js";
@@ -40,7 +39,7 @@ export function List() {
           <span class="spinner" aria-hidden="true"></span>Reconnecting. This is the last known state.
         </p>
       `}
-      <${Deleted} />
+      <${Deletions} kind="runs" take=${requestRun} />
       <${Tags} />
       <${Slot} name="list of runs" />
       ${groups.length === 0
@@ -54,22 +53,6 @@ export function List() {
     </div>
   `;
 }
-
-/** @param {number} time_ms since 1970 */
-const clockTime = (time_ms) => shortTime(new Date(time_ms).toISOString());
-
-/** What was deleted lately, and can be restored. */
-const Deleted = () => deletions.value.length > 0 && html`
-  <ul class="deletions" aria-label="Deleted">
-    ${deletions.value.map((deletion) => html`
-      <li key=${deletion.ids.join()}>
-        <span>Deleted ${deletion.words}. It can be restored until ${clockTime(deletion.until)}.</span>
-        <button class="link" disabled=${pending.value.restore} onClick=${() => restore(deletion)}>Undo</button>
-        <button class="quiet square small" aria-label="Dismiss" onClick=${() => forgetDeletion(deletion)}>✕</button>
-      </li>
-    `)}
-  </ul>
-`;
 
 /** Selects all, and names the columns. */
 function Titles() {

@@ -1,7 +1,7 @@
 // The menu of a run: all that can be done with it, and its files.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { copySettings, pending, runAgain } from "../../actions.js";
-import { deleteRun } from "../../deletions.js";
+import { deleteRun } from "../../run-deletions.js";
 import { fillersOf, kindOf, rowsOfRuns, runRow, Slot } from "../../features.js";
 import { downloads } from "../../files.js";
 import { addressOf } from "../../page-state.js";

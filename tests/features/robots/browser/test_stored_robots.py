@@ -92,6 +92,39 @@ def test_a_body_is_saved_raced_renamed_hidden_and_kept_while_runs_use_it(
     expect(choice.get_by_role("option", name="Max")).to_have_count(0)
 
 
+def test_one_that_was_deleted_comes_back(dashboard: Dashboard, server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(server.link(depth="study", tab="train"))
+    store = """femur_m => fetch("api/v1/robots", { method: "POST",
+      headers: { "X-Requested-With": "x" },
+      body: JSON.stringify({ name: "Bo", robot: { preset: "dog", femur_m } }) })"""
+    page.evaluate(store, 0.085)
+    robots = listed(dashboard)
+    robots.get_by_role("button", name="Delete Bo").click()
+    deleted = robots.get_by_role("list", name="Deleted")
+    words = re.compile(r"Deleted “Bo”\. It can be restored until \d\d:\d\d")
+    expect(deleted).to_contain_text(words)
+    expect(robots.get_by_label("Name of Bo")).to_have_count(0)
+    assert dashboard.violations_in_both_themes() == []
+    page.reload()
+    robots = listed(dashboard)
+    expect(deleted).to_contain_text(words)
+    # Its name is taken meanwhile, until that robot has another one.
+    page.evaluate(store, 0.086)
+    deleted.get_by_role("button", name="Undo").click()
+    expect(robots.get_by_role("alert")).to_contain_text("give that one another name")
+    assert [complaint.split()[0] for complaint in dashboard.complaints] == ["409"]
+    dashboard.complaints.clear()
+    robots.get_by_label("Name of Bo").fill("Max")
+    robots.get_by_label("Name of Bo").press("Enter")
+    expect(robots.get_by_label("Name of Max")).to_be_visible()
+    deleted.get_by_role("button", name="Undo").click()
+    expect(robots.get_by_label("Name of Bo")).to_be_visible()
+    expect(deleted).to_have_count(0)
+    for name in ("Bo", "Max"):
+        robots.get_by_role("button", name=f"Delete {name}").click()
+
+
 def test_a_link_brings_the_body_to_a_server_that_does_not_have_it(
     dashboard: Dashboard, server: Serving
 ) -> None:
