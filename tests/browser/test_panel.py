@@ -105,6 +105,26 @@ def test_tabs_never_move(dashboard: Dashboard, server: Serving) -> None:
         expect(dashboard.reason).to_be_visible()
 
 
+def test_what_is_scrolled_is_scrolled_by_keys_wherever_it_is(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    with shared_server.api() as api:
+        hold(api, finished(api, "races", RACE), 5.0)
+    page = dashboard.page
+    page.set_viewport_size({"width": 1280, "height": 720})
+    dashboard.open(shared_server.address)
+    body = page.locator("#panel-body")
+    expect(dashboard.standings).to_be_visible()
+    # What it has grows, which changes nothing of its own size.
+    page.set_viewport_size({"width": 1280, "height": 2000})
+    expect(body).not_to_have_attribute("tabindex", "0")
+    dashboard.scoreboard.evaluate("element => element.style.minHeight = '3000px'")
+    expect(body).to_have_attribute("tabindex", "0")
+    body.evaluate("element => element.scrollTop = element.scrollHeight")
+    expect(body).not_to_have_class(re.compile("follows"))
+    assert dashboard.violations("scrollable-region-focusable") == []
+
+
 def plotted(dashboard: Dashboard, selector: str) -> tuple[float, float]:
     """Return width and height from the first to the last that is plotted [px]."""
     expect(dashboard.page.locator(selector).first).to_be_visible()

@@ -169,13 +169,13 @@ const Contents = ({ name }) =>
 function Body({ name }) {
   const hasTabs = isAtLeast("try") || isPhone.value;
   const body = useRef(/** @type {HTMLElement | null} */ (null));
-  const followed = useFade(body);
+  const { isScrollable, follows } = useScrolling(body);
   const attributes = hasTabs
     ? { "role": "tabpanel", "aria-labelledby": `tab-${name}` }
     : { "role": "region", "aria-label": tabTitle(name) };
   return html`
-    <div class=${`body ${followed ? "follows" : ""}`} id="panel-body" ref=${body} tabindex=${followed ? 0 : undefined}
-      ...${attributes}>
+    <div class=${`body ${follows ? "follows" : ""}`} id="panel-body" ref=${body}
+      tabindex=${isScrollable ? 0 : undefined} ...${attributes}>
       ${isPhone.value && html`<${ReasonOnPhone} />`}
       <${Contents} name=${name} />
       ${isPhone.value && name === "train" && html`<${OtherStarts} />`}
@@ -194,20 +194,38 @@ const Pinned = ({ name }) => html`
   </section>
 `;
 
-/** Whether more of a scrolled element follows below. @param {{ current: HTMLElement | null }} host */
-function useFade(host) {
-  const [follows, setFollows] = useState(false);
+/** Less than this of it is no more to read. */
+const FOLLOWS_PX = 8;
+
+/**
+ * Whether an element can be scrolled, by keys too then, and whether more of it follows below. What it has grows without
+ * a change of its own size: its children are measured as well.
+ * @param {{ current: HTMLElement | null }} host
+ */
+function useScrolling(host) {
+  const [left, setLeft] = useState({ isScrollable: false, follows: false });
   const measure = () => {
     const { scrollTop = 0, clientHeight = 0, scrollHeight = 0 } = host.current ?? {};
-    setFollows(scrollHeight - clientHeight - scrollTop > 8);
+    const [isScrollable, follows] = [0, scrollTop + FOLLOWS_PX].map((above) => scrollHeight - clientHeight > above);
+    setLeft((before) => (before.isScrollable === isScrollable && before.follows === follows
+      ? before : { isScrollable, follows }));
   };
   useLayoutEffect(measure);
   useEffect(() => {
     const element = /** @type {HTMLElement} */ (host.current);
-    const watcher = new ResizeObserver(measure);
-    watcher.observe(element);
+    const sizes = new ResizeObserver(measure);
+    const observe = () => {
+      sizes.disconnect();
+      for (const each of [element, ...element.children]) sizes.observe(each);
+    };
+    const children = new MutationObserver(observe);
+    observe();
+    children.observe(element, { childList: true });
     element.addEventListener("scroll", measure, { passive: true });
-    return () => watcher.disconnect();
+    return () => {
+      sizes.disconnect();
+      children.disconnect();
+    };
   }, []);
-  return follows;
+  return left;
 }
