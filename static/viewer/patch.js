@@ -5,7 +5,7 @@
 //                     labels.js have}
 //                     {type: "hexapods:draw", messages: of viser}
 //                     {type: "hexapods:inspect"}, as inspection.js has it
-//   to the parent     {type: "hexapods:status", status: "connected"}
+//   to the parent     {type: "hexapods:status", status: "connected" when it can draw, "drawn" when it shows something}
 //                     {type: "hexapods:taken"}: the viewer has taken the camera, by hand
 //                     {type: "hexapods:key", key, code, shiftKey}
 //                     {type: "hexapods:drag"} while files are dragged over the picture
@@ -32,6 +32,21 @@
   });
   setTheme(new URLSearchParams(location.search).get("theme"));
   addEventListener("hexapods:connected", () => tellParent({ type: "hexapods:status", status: "connected" }));
+
+  // ---- the first picture: on a busy machine it comes seconds after the client is connected
+  const PICTURES = 2;
+  const afterPictures = (number, act) =>
+    requestAnimationFrame(() => (number > 1 ? afterPictures(number - 1, act) : act()));
+  let newest;
+  const awaitPicture = () => {
+    const queue = window.__viserMutable?.messageQueue;
+    newest ??= queue?.at(-1);
+    if (!queue || queue.includes(newest)) requestAnimationFrame(awaitPicture);
+    // What the client has taken is in its next picture, with the camera where it belongs in the one after it.
+    else afterPictures(PICTURES, () => tellParent({ type: "hexapods:status", status: "drawn" }));
+  };
+  addEventListener("hexapods:draw", () => requestAnimationFrame(awaitPicture), { once: true });
+
   addEventListener("hexapods:taken", () => tellParent({ type: "hexapods:taken" }));
 
   // ---- files that are dragged over the picture are dropped on the page, which covers it as soon as it knows

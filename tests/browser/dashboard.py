@@ -50,7 +50,7 @@ _FOLD = """() => document.querySelectorAll("[data-unfolded]").forEach(one =>
     ["open", "data-unfolded"].forEach(name => one.removeAttribute(name)))"""
 # A route of Playwright would stop each request of the page, to look at its address.
 WITHOUT_3D = """Object.defineProperty(HTMLIFrameElement.prototype, "src", {set() {}})"""
-HAS_A_PICTURE = {"type": "hexapods:status", "status": "connected"}
+HAS_A_PICTURE = [{"type": "hexapods:status", "status": word} for word in ("connected", "drawn")]
 _STATUS = re.compile(r"status of (\d+)")
 """Part of Chromium's message about an answer of 400 and above."""
 _METRES = re.compile(r"−?\d+\.\d\d\sm")
@@ -83,11 +83,12 @@ class Dashboard:
         if self._has_3d:
             self.wait_for_stage()
 
-    def stand_in_for_stage(self, message: Mapping[str, object] = HAS_A_PICTURE) -> None:
-        """Say what the 3D view says, once it has a picture or later, in a page that loads none."""
+    def stand_in_for_stage(self, *messages: Mapping[str, object]) -> None:
+        """Say what the 3D view says in a page that loads none; by default that it has a picture."""
         self.page.frame_locator("iframe").locator("html").wait_for(state="attached")
         [_, view] = self.page.frames
-        view.evaluate("message => parent.postMessage(message, '*')", message)
+        for message in messages or HAS_A_PICTURE:
+            view.evaluate("message => parent.postMessage(message, '*')", message)
 
     def wait_for_stage(self) -> None:
         """Wait until the 3D client has its stream."""

@@ -5,7 +5,7 @@ box of a robot is around its vertices; the area of boxes is their sum, a share o
 """
 
 import re
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any, Literal, NamedTuple
 
 import httpx2
@@ -260,7 +260,7 @@ def picture_of(page: Page) -> Frame:
     view = page.frame(url=re.compile("/viewer/"))
     assert view is not None
     labels = view.locator(".labels > div:not([hidden])")
-    wait_until(lambda: labels.count() >= 3)
+    wait_until(lambda: labels.count() >= 2)
     return view
 
 
@@ -308,3 +308,80 @@ def test_who_turns_the_picture_has_the_camera_until_a_press_brings_it_back(
     expect(back).to_have_count(0)
     at_rest(view, page)
     assert view.evaluate(place) == pytest.approx(directed, abs=0.02)
+
+
+PLACES = """async ([pictures, key]) => {
+    const places = [];
+    while (places.length < pictures) {
+        await new Promise(requestAnimationFrame);
+        const {camera, nodeRefFromName} = __viserMutable;
+        const toRun = nodeRefFromName["/world/run"].matrixWorld.clone().invert();
+        const place = camera.position.clone().applyMatrix4(toRun).toArray();
+        places.push(place.map((metres) => metres.toFixed(2)).join(" "));
+        if (places.length === 3 && key) {
+            dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
+        }
+    }
+    return places;
+}"""
+"""Where the camera is in each of some pictures, of the run [m]; a key is pressed in the third."""
+
+
+@pytest.mark.parametrize("motion", ["reduce", "no-preference"])
+def test_without_motion_the_camera_cuts_and_stands(
+    dashboard: Dashboard,
+    shared_server: Serving,
+    race: dict[str, Any],
+    motion: Literal["reduce", "no-preference"],
+) -> None:
+    page = dashboard.page
+    page.emulate_media(reduced_motion=motion)
+    dashboard.open(shared_server.link(run=race["id"], t="0"))
+    view = picture_of(page)
+    at_rest(view, page)
+    moves = {"another side": moves_within(view, 24, "v")}
+    at_rest(view, page)
+    dashboard.button("Play your replay").click()
+    moves["race"] = moves_within(view, 24)
+    page.get_by_role("slider", name="Moment of your replay").press("End")
+    moves["finish"] = moves_within(view, 12)
+
+    if motion == "reduce":
+        assert moves["another side"] == 1
+        # It stands while robots walk, and is put elsewhere where they would leave the picture.
+        assert 1 <= moves["race"] <= 4
+        assert moves["finish"] <= 1
+    else:
+        assert moves["another side"] > 2
+        assert moves["race"] > 4
+
+
+def moves_within(view: Frame, pictures: int, key: str = "") -> int:
+    """Return how often the camera is elsewhere than in the picture before, pressing a key."""
+    places: list[str] = view.evaluate(PLACES, [pictures, key])
+    return sum(a != b for a, b in pairwise(places))  # whole numbers
+
+
+def test_the_picture_is_said_to_load_until_robots_are_in_it(
+    dashboard: Dashboard, shared_server: Serving, race: dict[str, Any]
+) -> None:
+    page = dashboard.page
+    page.add_init_script(FIRST_PICTURE)
+    dashboard.open(shared_server.link(run=race["id"], t="4"))
+    expect(page.get_by_text("Loading the picture…")).to_have_count(0)
+    assert page.evaluate("firstPicture") == {"robots": True, "isAimed": True}
+
+
+FIRST_PICTURE = """new MutationObserver(() => {
+    const isLoading = document.querySelector(".placeholder") !== null;
+    if (!window.wasLoading || isLoading) {
+        window.wasLoading ||= isLoading;
+        return;
+    }
+    const {nodeRefFromName, camera} = document.querySelector("iframe").contentWindow.__viserMutable;
+    window.firstPicture ??= {
+        robots: Object.keys(nodeRefFromName).some((name) => /run\\/robots/.test(name)),
+        isAimed: camera.position.length() < 4,
+    };
+}).observe(document, {childList: true, subtree: true});"""
+"""Keeps what is in the 3D view when the page no longer says that it loads."""

@@ -22,7 +22,7 @@ import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */
 
-/** A frame that has not reported its status for so long is shown as it is. */
+/** A frame that has not reported the next status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
 const PICK_DELAY_MS = 60;
 
@@ -33,10 +33,17 @@ const laneColours = computed(() => (scene.value?.lanes ?? []).map(({ color }) =>
 export function Stage() {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
+  // Where much is computed, the picture comes seconds after the client is connected.
+  const [isDrawn, setDrawn] = useState(false);
   // The first address has it; later changes are sent to the frame, which must not load again.
   const [address] = useState(() => `viewer/?theme=${shownTheme.peek()}`);
 
-  useFrame(frame, setStatus);
+  useFrame(frame, setStatus, setDrawn);
+  useEffect(() => {
+    if (status === "loading" || isDrawn) return undefined;
+    const timer = setTimeout(() => setDrawn(true), STATUS_TIMEOUT_MS);
+    return () => clearTimeout(timer);
+  }, [status, isDrawn]);
   // What was picked is of the run that was shown.
   useEffect(() => closeLegs, [scene.value?.run_id]);
   const colours = laneColours.value;
@@ -58,7 +65,7 @@ export function Stage() {
     <section class=${`stage ${awayWords && !isReplayed() ? "away" : ""}`} aria-label="Stage" data-status=${status}>
       <div class="picture">
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
-        ${status === "loading" && html`<${StagePlaceholder} />`}
+        ${!isDrawn && html`<${StagePlaceholder} />`}
         ${isStill.value ? html`<${Slot} name="over a still scene" />` : html`<${OverThePlayed} />`}
         ${awayWords && html`
           <p class="away-note" role="status"><span class="spinner" aria-hidden="true"></span>${awayWords}</p>
@@ -99,8 +106,9 @@ const loadLegs = () => import("./leg-menu.js").then(({ Legs }) => Legs);
  * Take what the frame tells: clicks, places of legs, and its status.
  * @param {{ current: HTMLIFrameElement | null }} frame
  * @param {(change: string | ((now: string) => string)) => void} setStatus
+ * @param {(isDrawn: boolean) => void} setDrawn
  */
-function useFrame(frame, setStatus) {
+function useFrame(frame, setStatus, setDrawn) {
   useEffect(() => {
     const send = (/** @type {Message[]} */ messages) =>
       frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, location.origin);
@@ -124,8 +132,11 @@ function useFrame(frame, setStatus) {
       "hexapods:taken": takeCamera,
       "hexapods:touched": () => (turnedByHand.value += 1),
       "hexapods:status": ({ status }) => {
+        if (status === "drawn") {
+          setDrawn(true);
+          return;
+        }
         setStatus(status);
-        if (status !== "connected") return;
         drawIn(send);
         drawHere.value = (messages) => send(messages);
       },
@@ -243,7 +254,7 @@ function StagePlaceholder() {
           ${robots.map((agent, lane) => html`<${Robot} x=${LANES_X[lane]} color=${agentOf(agent).color} />`)}
         </g>
       </svg>
-      <p>The robots walk to the start line…</p>
+      <p>Loading the picture…</p>
     </div>
   `;
 }
