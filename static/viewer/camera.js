@@ -1,5 +1,5 @@
 // The directed camera: shows the robots in the shot that the page names, follows them as they walk, and flies or cuts
-// to the next shot. A viewer who turns the picture by hand has the camera from then on.
+// to the next shot. A viewer who turns the picture, by hand or by keys, has the camera from then on.
 // Assumptions about viser's client are listed and tested in hexapods/drawing/viser_internals.
 //
 //   events   hexapods:show {shot?: a shot of shots.js, or null where the viewer has the camera; angle?: the number of
@@ -295,4 +295,28 @@
     if (down && buttons && Math.hypot(clientX - down.clientX, clientY - down.clientY) > DRAG_PX) takeOver();
   });
   listen("wheel", (event) => isPicture(event) && takeOver());
+
+  // ---- keys: the client turns the picture by arrows, and is brought nearer and away by plus and minus
+
+  /** Keys by which the client moves its camera; the page has letters for what it does itself. */
+  const MOVES = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
+  const NEARER = 0.8;
+  const DOLLIES = { "+": NEARER, "=": NEARER, "-": 1 / NEARER, "−": 1 / NEARER };
+
+  const dolly = (factor) => {
+    const { cameraControl } = viewer();
+    cameraControl.dollyTo(factor * cameraControl.distance, false);
+  };
+  // Before the client, which listens on the document.
+  listen("keydown", (event) => {
+    const { key: pressed, code, target } = event;
+    if (target.closest?.("input, textarea, select, [contenteditable]")) return;
+    if (MOVES.has(code)) event.stopPropagation();
+    if (event.ctrlKey || event.altKey || event.metaKey || !isReady()) return;
+    if (pressed.startsWith("Arrow")) takeOver();
+    if (pressed in DOLLIES) {
+      takeOver();
+      dolly(DOLLIES[pressed]);
+    }
+  });
 })();

@@ -58,7 +58,7 @@
     });
   }
 
-  // ---- the dashboard's shortcuts work while the viewer has the focus
+  // ---- the dashboard's shortcuts work while the viewer has the focus, before camera.js keeps them from the client
   addEventListener("keydown", (event) => {
     const { key, code, shiftKey } = event;
     if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return;
@@ -66,5 +66,5 @@
     if (key.length === 1 || key === "Escape") {
       tellParent({ type: "hexapods:key", key, code, shiftKey });
     }
-  });
+  }, { capture: true });
 })();

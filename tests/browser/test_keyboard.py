@@ -8,6 +8,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, finished, hold
+from tests.browser.test_picture import at_rest, picture_of
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -135,6 +136,59 @@ def test_help_opens_at_its_beginning(dashboard: Dashboard, shared_server: Servin
     assert dialog.evaluate("element => element.scrollTop") == 0
     page.keyboard.press("Escape")
     expect(dialog).to_be_hidden()
+
+
+@pytest.mark.looks_at_3d
+def test_a_key_in_the_picture_does_one_thing(dashboard: Dashboard, shared_server: Serving) -> None:
+    page = dashboard.page
+    with shared_server.api() as api:
+        race = finished(api, "races", RACE)
+    dashboard.open(shared_server.link(run=race["id"], t="2"))
+    view = picture_of(page)
+    at_rest(view, page)
+    place = "() => __viserMutable.camera.position.toArray()"
+    directed = pytest.approx(view.evaluate(place), abs=0.02)
+
+    # Letters are the page's, also those by which the client would move its camera.
+    page.get_by_title("The robots on the track, in 3D").focus()
+    for key in "wasqd":
+        page.keyboard.press(key, delay=300)
+    expect(dashboard.group("Depth").get_by_role("button", pressed=True)).to_have_text("Try")
+    at_rest(view, page)
+    assert view.evaluate(place) == directed
+    # Arrows turn it, plus and minus bring it nearer and away: it is the viewer's, until C.
+    back = dashboard.button("Directed camera")
+    expect(back).to_have_count(0)
+    page.keyboard.press("ArrowLeft", delay=600)
+    expect(back).to_be_visible()
+    at_rest(view, page)
+    turned = view.evaluate(place)
+    assert turned != directed
+    page.keyboard.press("+")
+    at_rest(view, page)
+    assert view.evaluate(place) != pytest.approx(turned, abs=0.02)
+    page.keyboard.press("c")
+    expect(back).to_have_count(0)
+    at_rest(view, page)
+    assert view.evaluate(place) == directed
+    disturbs_a_race_that_plays(dashboard)
+
+
+def disturbs_a_race_that_plays(dashboard: Dashboard) -> None:
+    """The menu of a leg offers to pause the race, and then what can happen."""
+    page = dashboard.page
+    page.get_by_label("Speed", exact=True).select_option("0.25")
+    dashboard.button("Play your replay").press("Enter")
+    page.keyboard.press("1")
+    page.keyboard.press("l")
+    expect(page.get_by_role("button", name="Leg 1")).to_be_focused()
+    page.keyboard.press("Enter")
+    menu = page.get_by_role("region", name=re.compile("leg 1$"))
+    expect(menu).to_contain_text("A race is disturbed at the step where it is paused.")
+    expect(menu.get_by_role("button", name="Pause")).to_be_focused()
+    page.keyboard.press("Enter")
+    kinds = menu.get_by_role("group", name="What happens")
+    expect(kinds.get_by_role("button").first).to_be_focused()
 
 
 def goes_through_depths_and_tabs(dashboard: Dashboard) -> None:

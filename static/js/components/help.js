@@ -16,6 +16,7 @@ const pageKeys = () => [
   ["1 – 8", "follow the robot in that lane; 0 frees the camera"],
   ["C", "directed camera: all robots, as the race goes"],
   ["V", "the same from another side"],
+  ["← →", "in the picture: turn it, with ↑ ↓ too; + − nearer and away"],
   ["L", "the legs of the robot that is followed; arrows choose, Enter opens"],
   ["R", "press the main button"],
   ["D", "show more: Watch, Try, Study"],

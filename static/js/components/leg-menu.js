@@ -4,12 +4,12 @@ import { branchRace, pending } from "../actions.js";
 import { chosenWith, conditionsAt, conditionsNow, disturbancesOf, kindNamed, pressed } from "../disturbances.js";
 import { closeLegs, legPoints, legsOf, picked, pickLeg } from "../page.js";
 import { disturb } from "../live-changes.js";
-import { liveTraining, stepShown } from "../on-stage.js";
-import { heldRace } from "../raced-on.js";
+import { liveTraining, stepShown, work } from "../on-stage.js";
+import { heldRace, openRace } from "../raced-on.js";
 import { isOperator } from "../selectors.js";
 import { isClosed } from "../settings.js";
 import { isAway, scene } from "../store.js";
-import { positionInWords, scale } from "../time.js";
+import { positionInWords, scale, toggleTime } from "../time.js";
 import { openTab } from "../workspace.js";
 import { html } from "./elements.js";
 import { Restricted } from "./fields.js";
@@ -82,10 +82,12 @@ function MenuAt({ at }) {
   const hasOffer = Boolean(liveTraining.value ?? heldRace.value);
   const wasFocused = useRef(false);
   useEffect(() => {
-    const isElsewhere = wasFocused.current && !menu.current?.contains(document.activeElement);
+    // The body has it where the button that was pressed is gone.
+    const isKept = document.activeElement === document.body || menu.current?.contains(document.activeElement);
+    const isElsewhere = wasFocused.current && !isKept;
     if (!isPlaced || isElsewhere) return;
     /** @type {HTMLElement | null | undefined} */
-    const first = menu.current?.querySelector(".kinds button") ?? menu.current?.querySelector("button");
+    const first = menu.current?.querySelector(".kinds button, .primary") ?? menu.current?.querySelector("button");
     first?.focus({ preventScroll: true });
     wasFocused.current = true;
   }, [isPlaced, hasOffer]);
@@ -111,8 +113,20 @@ function Offer({ at }) {
   if (isClosed("disturb")) return html`<${Restricted} what="what happens to the robots" />`;
   if (training) return html`<${OfTraining} run=${training} at=${at} />`;
   if (race) return html`<${OfRace} race=${race} at=${at} />`;
-  return html`<p class="dim">Hold a race that has been computed, or start a training: then this can be disturbed.</p>`;
+  if (openRace.value) return html`<${OfPlaying} />`;
+  return html`<p class="dim">${wantingInWords()}</p>`;
 }
+
+/** Of a race that plays: which of its steps is meant is known once it is paused. */
+const OfPlaying = () => html`
+  <p>A race is disturbed at the step where it is paused.</p>
+  <button class="primary" onClick=${toggleTime}>Pause</button>
+`;
+
+/** What is to be done before the robots can be disturbed. */
+const wantingInWords = () => (work.value
+  ? "Something is being computed: once it is done, a race that has finished can be disturbed at any of its steps."
+  : "Start a practice, or show a race that has finished: then this can be disturbed.");
 
 /** The kinds that can happen to what was picked. @type {Record<Pick["what"], () => string[]>} */
 const KINDS = {
