@@ -6,13 +6,15 @@ Each card's promise is on the screen when the card is shown.
 import json
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, ViewportSize, expect
 
 from tests.browser.budget import shown_on
 from tests.browser.dashboard import Dashboard
-from tests.browser.serving import Serving
+from tests.browser.serving import Serving, finished, serving
+from tests.browser.test_keyboard import tab_to
 from tests.browser.test_workspace import BUDGETS, DESK
 
 pytestmark = pytest.mark.timeout(400)
@@ -112,6 +114,59 @@ def test_who_only_presses_what_is_highlighted_learns_why_greedy_won(
     [race] = dashboard.get("api/v1/races")["items"]
     assert [change["settings"] for change in practice["changes"] if change.get("settings")]
     assert race["config"]["lanes"][0]["training_id"] == practice["id"]
+
+
+TOKEN = "for-the-operator"
+WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
+RACE = {**WALK, "steps": 20, "lanes": [{"agent": "greedy"}, {"agent": "random-walk"}]}
+HAS_FOCUS = """() => document.activeElement.closest(".to-press") !== null
+    && document.activeElement.matches(":focus-visible")"""
+_AT_THE_END = ":is(.to-press:not([aria-disabled=true]), [role=tab][aria-selected=true])"
+
+
+def test_a_spectator_goes_through_by_keys_alone_while_the_server_crashes(
+    dashboard: Dashboard, tmp_path: Path
+) -> None:
+    page = dashboard.page
+    first = Serving(tmp_path, token=TOKEN)
+    dashboard.open(first.address)
+    expect(dashboard.lesson).to_contain_text("It goes on once a practice is started here.")
+    with first.api(TOKEN) as api:
+        finished(api, "races", RACE)
+        practice = {**WALK, "steps": 100_000, "pace": 8}
+        api.post("trainings", json=practice).raise_for_status()
+        expect(dashboard.lesson).to_contain_text(re.compile("It tries moves|First test"))
+    tab_to(page, highlighted(dashboard))
+    first.kill()
+    expect(dashboard.lesson).to_contain_text(
+        "The server is away. The lesson goes on when it is back."
+    )
+    expect(highlighted(dashboard)).to_have_attribute("aria-disabled", "true")
+    assert page.evaluate(HAS_FOCUS)
+    assert dashboard.violations() == []
+
+    with serving(tmp_path, first.port, token=TOKEN):
+        expect(dashboard.lesson).not_to_contain_text("The server is away.")
+        dashboard.complaints.clear()
+        cards = goes_on_by_enter(dashboard)
+    assert {"test", "newest", "vote", "ready", "race", "finish", "why", "turn"} <= {*cards}
+    expect(page.get_by_role("tab", name="Why", selected=True)).to_be_focused()
+
+
+def goes_on_by_enter(dashboard: Dashboard) -> list[str]:
+    """Press Enter on what is highlighted, which keeps the focus, until the lesson is over."""
+    page, cards = dashboard.page, list[str]()
+    for _ in range(MAX_PRESSES):
+        expect(page.locator(_AT_THE_END)).to_have_count(1)
+        if dashboard.lesson.count() == 0:
+            return cards
+        cards.append(open_card(dashboard))
+        if cards[-2:] == ["race", "race"]:
+            expect(dashboard.lesson).to_contain_text("Why?")
+            continue
+        page.wait_for_function(HAS_FOCUS)
+        page.keyboard.press("Enter")
+    raise AssertionError(f"the lesson is not over: {cards}")
 
 
 SMALL: list[ViewportSize] = [

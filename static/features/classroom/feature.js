@@ -1,13 +1,13 @@
 // Lessons and rooms. The card below the time bar is there from the start, of the first lesson or of that which the
 // address names: a question or a task, and the way to the next one. All else is loaded when it is opened.
 import { computed, effect, untracked } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { pending, resume, resumeRun, setShared } from "../../js/actions.js";
 import { earlyEndOf } from "../../js/narrative/moment.js";
 import { change, page } from "../../js/page-state.js";
 import { helpIsOpen, isCardFolded } from "../../js/page.js";
 import { followRuns } from "../../js/runs.js";
-import { isOperator, mayChange } from "../../js/selectors.js";
+import { isOperator, mayChange, mayStart } from "../../js/selectors.js";
 import { isPreset } from "../../js/settings.js";
 import { isAway, isGone, options } from "../../js/store.js";
 import { isAtLeast, isPanelHidden, openTab, tab } from "../../js/workspace.js";
@@ -110,15 +110,27 @@ const ofPause = (run) => ({
   title: `The ${run.kind} is paused.`, text: "", press: { label: "Go on", run: resume, isHeld: isAway.value },
 });
 
+/** Of a run that does not go on by itself; null of others. @param {Run} run */
+function ofHalt(run) {
+  // Who may start nothing watches what there is of a practice; a race that was not decided answers no vote.
+  if (earlyEndOf(run) && (mayStart.value || run.kind === "race")) return ofEarlyEnd(run);
+  return run.state === "paused" && mayChange(run) ? ofPause(run) : null;
+}
+
+/** While the server is away a card waits; a vote does not need it. @param {Said} said @returns {Said} */
+const ofAway = ({ title, press }) => ({
+  title, text: "The server is away. The lesson goes on when it is back.", press: press && { ...press, isHeld: true },
+});
+
 /** What a card says: first of all what keeps its promise from the screen, and the press that mends it. */
 /** @param {FirstCard} firstCard @returns {Said} */
 function saidBy(firstCard) {
+  if (isAway.value) return ofAway(firstCard.say());
   const run = { practice, race, none: null }[firstCard.of ?? "none"]?.value ?? null;
-  if (run === null) return firstCard.say();
-  if (earlyEndOf(run)) return ofEarlyEnd(run);
-  if (run.state === "paused" && mayChange(run)) return ofPause(run);
+  const halt = run && ofHalt(run);
+  if (halt) return halt;
   const said = firstCard.say();
-  if (firstCard.holds?.()) return said;
+  if (run === null || firstCard.holds?.()) return said;
   if (!isInPicture(run)) {
     return { ...said, press: { label: `Show the ${firstCard.of}`, run: () => show(run), isHeld: isComing(run) } };
   }
@@ -176,8 +188,31 @@ export function followLesson() {
 /** The buttons of a lesson of the address. */
 const loadButtons = () => withStyle("style/card.css", import("./linked-lesson.js")).then(({ Buttons }) => Buttons);
 
+/** Where the focus goes when it was in a card that is no more: to the open tab. */
+const focusTab = () => {
+  const element = document.querySelector("[role=tab][aria-selected=true]") ?? document.getElementById("main");
+  /** @type {HTMLElement | null} */ (element)?.focus();
+};
+
+/**
+ * Keep the focus in the card while it changes: what had it may be gone, as the lanes are once the vote is made.
+ * @param {{ current: HTMLElement | null }} bar
+ */
+function useFocusKept(bar) {
+  // As it was before this change is drawn.
+  const hadFocus = bar.current?.contains(document.activeElement) ?? false;
+  useLayoutEffect(() => {
+    if (!hadFocus || bar.current?.contains(document.activeElement)) return;
+    const next = bar.current?.querySelector(".to-press button, button.to-press");
+    if (next) /** @type {HTMLElement} */ (next).focus();
+    else requestAnimationFrame(focusTab);
+  });
+}
+
 function CardBar() {
   const shown = card.value;
+  const bar = useRef(/** @type {HTMLElement | null} */ (null));
+  useFocusKept(bar);
   // A new one is not folded, as on a phone the one before may be.
   useEffect(() => {
     isCardFolded.value = false;
@@ -185,7 +220,7 @@ function CardBar() {
   if (linkProblem.value) return html`<${NoLesson} />`;
   if (!shown) return null;
   return html`
-    <section class="card-bar" aria-label="Lesson">
+    <section class="card-bar" aria-label="Lesson" ref=${bar}>
       <span class="card-number">
         <span class="sr-only">Card </span>${cardNumber}<span class="of"> of </span>${total}
       </span>

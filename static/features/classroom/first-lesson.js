@@ -6,7 +6,7 @@ import { adopt, attempt, pending } from "../../js/actions.js";
 import { startRace, startTraining } from "../../js/api.js";
 import { count, metres, percentage, whole } from "../../js/format.js";
 import { narrative } from "../../js/headline.js";
-import { distanceOf, isShownToEnd } from "../../js/narrative/moment.js";
+import { distanceOf, earlyEndOf, isShownToEnd } from "../../js/narrative/moment.js";
 import { clock, phase, raceInView, raceScene, shownRun, trainingInView } from "../../js/on-stage.js";
 import { page } from "../../js/page-state.js";
 import { closeReplay, isOwn, openReplay, playReplay, position } from "../../js/player.js";
@@ -53,9 +53,10 @@ const practiceToWatch = computed(() => {
 
 /** A race to watch: one of the practice; for those who can start none, else that of the page, or the newest. */
 const raceToWatch = computed(() => {
-  const races = everyRun.value.filter((run) => run.kind === "race" && run.progress.done > 0);
+  const races = everyRun.value.filter((run) => run.kind === "race" && run.progress.done > 0 && !earlyEndOf(run));
   const itsRace = races.find((run) => trainingIds(run).includes(lessonProgress.value.practice ?? ""));
-  return itsRace ?? (mayStart.value ? null : raceInView.value ?? races[0] ?? null);
+  const inView = races.find(({ id }) => id === raceInView.value?.id);
+  return itsRace ?? (mayStart.value ? null : inView ?? races[0] ?? null);
 });
 
 /** Whether a practice that this page is to follow has begun in the picture. */
@@ -284,7 +285,7 @@ export const FIRST = [
       const text = `${learner()} will try moves and keep what each was worth. The others compute before each step.`;
       const run = practiceToWatch.value;
       if (!run && !mayStart.value) {
-        return { title: "Who will win?", text: "Nothing has been started here yet.", press: null };
+        return { title: "Who will win?", text: "It goes on once a practice is started here.", press: null };
       }
       const isHeld = isStarting() || lessonProgress.value.practice !== null;
       return {
@@ -332,7 +333,8 @@ export const FIRST = [
     name: "newest", of: "practice", shows: LEARNING,
     comes: () => (steers.value
       ? tests().some(({ step }) => step > (alphaChange()?.step ?? Infinity))
-      : isShownToEnd(scene.value, practice.value?.id ?? null)),
+      // The start line, too, is shown to its end.
+      : practice.value !== null && isShownToEnd(scene.value, practice.value.id)),
     say: () => {
       const newest = tests().at(-1);
       const before = tests().findLast(({ step }) => step <= (alphaChange()?.step ?? 0));
@@ -349,7 +351,9 @@ export const FIRST = [
   },
   {
     name: "ready", shows: ".stage", say: () => ({
-      title: `Your vote: ${votedTitle()}.`, text: "The first robot to use its 50 steps ends the race.",
+      title: `Your vote: ${votedTitle()}.`,
+      text: mayStart.value || (race.value ?? raceToWatch.value)
+        ? "The first robot to use its 50 steps ends the race." : "It goes on once a race is started here.",
       press: pressOfVote(),
     }),
   },

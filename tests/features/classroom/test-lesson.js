@@ -7,7 +7,7 @@ import lessons, {
 import { FIRST, vote, voteFor } from "../../../static/features/classroom/first-lesson.js";
 import { keep, lessonProgress, restart } from "../../../static/features/classroom/lesson.js";
 import { change, page, read } from "../../../static/js/page-state.js";
-import { applyEvent, options } from "../../../static/js/store.js";
+import { applyEvent, connection, options } from "../../../static/js/store.js";
 import { explainingTab, setDepth } from "../../../static/js/workspace.js";
 import { installOnly } from "../../page/features.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "../../page/options.js";
@@ -235,4 +235,30 @@ test("the menu hides the lesson and brings it back", () => {
   assert.deepEqual([card.value, words()], [null, "The first lesson"]);
   row?.run?.();
   assert.equal(cardNumber.value, 1);
+});
+
+test("while the server is away the card says so, and holds what is to be pressed", () => {
+  practiseTo(1, PRACTICE, "spectator");
+  connection.value = "reconnecting";
+  assert.deepEqual([card.value?.title, card.value?.press?.isHeld], ["It tries moves.", true]);
+  assert.match(card.value?.text ?? "", /^The server is away\./);
+  connection.value = "live";
+  assert.match(card.value?.text ?? "", /^At random/);
+});
+
+test("of a practice that a crash has ended a spectator watches what there is, and of a race another one", () => {
+  const crashed = { ...PRACTICE, state: /** @type {const} */ ("interrupted"), can_resume: true };
+  keep({ at: "tries", practice: "practice" });
+  practiseTo(60, /** @type {Run} */ (crashed), "spectator");
+  assert.deepEqual([card.value?.title, label()], ["First test: 0.04\u00a0m.", "See its newest test"]);
+  keep({ at: "race", race: "race", vote: "greedy" });
+  const cut = /** @type {Run} */ ({ ...RACE, state: "interrupted" });
+  show([cut, { ...OTHERS, progress: { done: 9, total: 9 } }], cut, {
+    phase: "race", time_s: 3, time_out_s: null, lanes: [makeSceneLane({ step: 2 })],
+  }, { role: "spectator" });
+  assert.deepEqual([card.value?.title, label()], ["The race was interrupted.", "Back to the start"]);
+  press();
+  assert.deepEqual([at(), label()], ["ready", "Watch the race"]);
+  press();
+  assert.equal(lessonProgress.value.race, "others");
 });
