@@ -69,6 +69,8 @@ Assumed by `client`:
   which `static/viewer/inspection.js` puts the camera where a scene fills the picture, and
   `camera.js` hands it over. The scene's `onBeforeRender` is called when all nodes are where they
   will be drawn, and before the camera is read, so that `camera.js` places it there.
+- keys_are_heard_on_the_document: the client moves its camera by arrows and by the letters in
+  `MOVES` of `camera.js`, which it hears on the document, so that those can be kept from it.
 - scene_is_prepared: the client itself has no `onBeforeRender` of the scene, by which also
   `static/viewer/light.js` changes lights and materials before each frame; the materials of grids
   have their colours as uniforms.

@@ -489,6 +489,17 @@ def test_camera_is_controlled(client: str) -> None:
     )
 
 
+def test_keys_are_heard_on_the_document(client: str) -> None:
+    script = (assets.static_dir() / "viewer" / "camera.js").read_text("utf-8")
+    letters = re.search(r"MOVES = new Set\(\[(.*?)\]\)", script)
+    assert letters is not None
+    codes = re.search(r"(\w+)=new Set\(\[(`KeyW`[^\]]*)\]\)", client)
+    assert codes is not None
+    arrows = {"ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"}
+    assert {*re.findall(r"\w+", codes[2])} == {*re.findall(r"\w+", letters[1])} | arrows
+    assert re.search(rf"{codes[1]}\.has\(\w+\.code\).{{,400}}document\.addEventListener", client)
+
+
 def test_scene_is_prepared(client: str) -> None:
     assert re.search(r"isScene===!0&&\w+\.onBeforeRender\(", client)
     # Its own are of meshes.
