@@ -186,7 +186,7 @@ def _progress(lane: LaneFrame) -> str:
         return f"fell at step {whole(lane.fell_at_step + 1)}"
     if lane.halted:
         return f"stopped at step {whole(lane.step)}"
-    return "done" if lane.done else f"step {lane.step}"
+    return "done" if lane.done else f"step {whole(lane.step)}"
 
 
 class NameLabel:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from hexapods.domain.records import Record
+from hexapods.domain.text import whole
 from hexapods.domain.types import FloatArray
 from hexapods.runs.clocks import Clock
 from hexapods.shows.playhead import Point, simplified
@@ -32,7 +33,8 @@ class RunLabel:
 
     def at_step(self, step: int, steps: int, *, halted: bool) -> str:
         """Return the run's name with its progress: "Race 3, stopped at step 26 of 50"."""
-        return f"{self.name}, {f'{self.outcome} at ' if halted else ''}step {step} of {steps}"
+        outcome = f"{self.outcome} at " if halted else ""
+        return f"{self.name}, {outcome}step {whole(step)} of {whole(steps)}"
 
 
 MarkKind = Literal["time-out", "crossing", "fall", "disturbance", "evaluation"]

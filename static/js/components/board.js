@@ -25,9 +25,21 @@ import { LearningChart, RaceChart } from "./run-charts.js";
 
 const loadFiles = () => import("./run-files.js").then(({ RunFiles }) => RunFiles);
 
-export function Board() {
+export const Board = () => (standings.value === null && shownRun.value?.kind === "training"
+  ? html`<${PracticeBoard} />` : html`<${RaceBoard} />`);
+
+/** Of a practice the curve comes first: it is what happens, and the next race is still to come. */
+const PracticeBoard = () => html`
+  <section class="board-tab" aria-label="Scoreboard">
+    <${LearningChart} />
+    ${isAtLeast("try") && html`<${Choices} />`}
+    <${StartList} />
+    ${isAtLeast("study") && html`<${Loaded} name="downloads" load=${loadFiles} />`}
+  </section>
+`;
+
+function RaceBoard() {
   const rows = standings.value;
-  const isPractice = shownRun.value?.kind === "training";
   // Where the page is projected the lanes have the room: a chart has small type.
   const hasChart = !rows || !isProjected.value;
   return html`
@@ -35,7 +47,7 @@ export function Board() {
       ${rows ? html`<${Standings} rows=${rows} />` : html`<${StartList} />`}
       ${isAtLeast("try") && html`<${Choices} />`}
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
-      ${hasChart && (rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`)}
+      ${hasChart && html`<${RaceChart} />`}
       ${rows && isToldAll() && html`
         <p class="dim fine">${narrative.value.rule}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>

@@ -1,6 +1,7 @@
 // The time bar below the stage: play, the moment in the picture, how far the run is computed, what happened, and how it
 // is shown. It is shared by every page, unless this one plays a replay of its own.
 import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
+import { whole } from "../format.js";
 import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
@@ -200,17 +201,17 @@ const MIN_TICK_GAP_PX = 90;
 function Below({ known, width, place }) {
   const { unit, end, picture } = known;
   const wanted = Math.max(2, Math.min(6, Math.floor(width / MIN_TICK_GAP_PX)));
-  const last = unit === "s" ? `${Number(end.toFixed(1))}\u00a0s` : `${end} steps`;
+  const last = unit === "s" ? `${Number(end.toFixed(1))}\u00a0s` : `${whole(end)} steps`;
   const room = textWidth(last, 400) + 2 * SMALL_PX;
   const inner = ticks(end, wanted).filter((at) => (1 - at / end) * width > room);
-  const bubble = unit === "s" ? `${picture.toFixed(1)}\u00a0s` : `step ${Math.round(picture)}`;
+  const bubble = unit === "s" ? `${picture.toFixed(1)}\u00a0s` : `step ${whole(picture)}`;
   const half = textWidth(bubble) / 2 + SMALL_PX;
   const at = Math.min(Math.max(shareOf(picture, 0, end) * width, half), Math.max(half, width - half));
   const isFree = (/** @type {number} */ x) => Math.abs(x - at) > half + SMALL_PX;
   return html`
     <div class="below-rail" aria-hidden="true">
       ${inner.map((tick) => isFree(shareOf(tick, 0, end) * width) && html`
-        <span style=${{ left: place(tick) }}>${tick}</span>
+        <span style=${{ left: place(tick) }}>${unit === "s" ? tick : whole(tick)}</span>
       `)}
       ${at + half < width - textWidth(last, 400) && html`<span class="last">${last}</span>`}
       <b style=${{ left: `${at}px` }}>${bubble}</b>

@@ -151,7 +151,7 @@ const FIGURES = [
   ["seeds", "Every seed", "of all settings"],
 ];
 /** @type {[string, string][]} */
-const COLUMNS = [["1", "One column, 85 mm"], ["2", "Two columns, 178 mm"]];
+const COLUMNS = [["1", "One column, 85\u00a0mm"], ["2", "Two columns, 178\u00a0mm"]];
 
 /** @param {{ keys: string[], saveFigure: SaveFigure }} props */
 function PaperFigures({ keys, saveFigure }) {
