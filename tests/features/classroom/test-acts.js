@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { actOf } from "../../../static/features/classroom/room/acts/index.js";
 import { meanCurve } from "../../../static/features/classroom/room/acts/mean-curve.js";
 import { racedAmong } from "../../../static/features/classroom/room/acts/run.js";
-import { plotAxis, stackedDots } from "../../../static/features/classroom/room/acts/plot-geometry.js";
+import { besideEachOther, plotAxis, stackedDots } from "../../../static/features/classroom/room/acts/plot-geometry.js";
 import { settingDots } from "../../../static/features/classroom/room/acts/setting-dots.js";
 import { predictionsOf, winsOf } from "../../../static/features/classroom/room/acts/predictions.js";
 import { laneNames } from "../../../static/features/classroom/room/lane-names.js";
@@ -69,6 +69,17 @@ test("dots stand on each other, and become smaller until all fit into their plac
   for (const { x, y } of many.dots) {
     assert.ok(x >= many.radius && x <= 400 - many.radius && y + many.radius <= 100, `${x} ${y}`);
   }
+});
+
+test("dots at one place are beside each other, and others stay where they are", () => {
+  const alike = Array.from({ length: 5 }, () => ({ x: 50, y: 20 }));
+  const placed = besideEachOther([...alike, { x: 50, y: 80 }], 4, 100);
+  assert.deepEqual(placed[0], { x: 50, y: 20 });
+  assert.deepEqual(placed[5], { x: 50, y: 80 });
+  const xs = placed.slice(0, 5).map(({ x }) => x).sort((a, b) => a - b);
+  assert.ok(xs.every((x, n) => n === 0 || x - xs[n - 1] >= 8));
+  assert.ok(besideEachOther(Array.from({ length: 9 }, () => ({ x: 2, y: 0 })), 4, 100).slice(1)
+    .every(({ x }) => x >= 4 && x <= 96));
 });
 
 test("the typical curve is the interquartile mean at the steps that all have", () => {

@@ -1,7 +1,7 @@
 // Charts beside the dots of a class: the distances by the setting that each robot was given.
 import { html } from "../../../../js/components/elements.js";
 import { settingInWords } from "../allowed-settings.js";
-import { plotAxis } from "./plot-geometry.js";
+import { besideEachOther, plotAxis } from "./plot-geometry.js";
 import { AxisNumbers, useBox } from "./plot.js";
 import { settingDots } from "./setting-dots.js";
 
@@ -17,13 +17,13 @@ export function BySetting({ classroom: { shown }, results }) {
   const charts = settingDots(Object.keys(shown.may ?? {}), results?.entries ?? []);
   return charts.length > 0 && html`
     <div class="by-setting">
-      ${charts.map((dots) => html`<${Chart} key=${dots.name} dots=${dots} card=${shown} />`)}
+      ${charts.map((ofSetting) => html`<${Chart} key=${ofSetting.name} ofSetting=${ofSetting} card=${shown} />`)}
     </div>
   `;
 }
 
-/** @param {{ dots: SettingDots, card: LessonCard }} props */
-function Chart({ dots: { name, points, values }, card }) {
+/** @param {{ ofSetting: SettingDots, card: LessonCard }} props */
+function Chart({ ofSetting: { name, points, values }, card }) {
   const [host, { width, height, em }] = useBox();
   const { title, valueInWords } = settingInWords(name, card);
   const ys = plotAxis([0, 0.1, ...points.map(([, y]) => y)], 3);
@@ -34,6 +34,7 @@ function Chart({ dots: { name, points, values }, card }) {
   };
   const [inner, deep] = [width - LEFT_EM * em, height - (AXIS_EM + TITLE_EM) * em];
   const down = (/** @type {number} */ y) => (1 - ys.at(y)) * deep;
+  const dots = besideEachOther(points.map(([x, y]) => ({ x: xs.at(x) * inner, y: down(y) })), DOT_EM * em, inner);
   const format = (/** @type {number} */ x) => (values ? valueInWords(values[x]) : `${Number(x.toPrecision(3))}`);
   return html`
     <div class="plot" ref=${host}>
@@ -46,9 +47,7 @@ function Chart({ dots: { name, points, values }, card }) {
               <text class="plot-number" x=${-0.4 * em} y=${down(y) + 0.3 * em} text-anchor="end">
                 ${Number(y.toFixed(2))}</text>
             `)}
-            ${points.map(([x, y]) => html`
-              <circle class="set-to" cx=${xs.at(x) * inner} cy=${down(y)} r=${DOT_EM * em} />
-            `)}
+            ${dots.map(({ x, y }) => html`<circle class="set-to" cx=${x} cy=${y} r=${DOT_EM * em} />`)}
             <${AxisNumbers} axis=${xs} format=${format} width=${inner} y=${deep} em=${em} />
           </g>
         </svg>

@@ -73,3 +73,22 @@ function dotsAt(shares, width, radius) {
     return { x: radius + (column / columns) * (width - 2 * radius), y: radius + below * pitch };
   });
 }
+
+/**
+ * Dots moved to a side where they would cover one another: thirty at one place are a row of thirty.
+ * @param {{ x: number, y: number }[]} dots middles [px]
+ * @param {number} radius [px]
+ * @param {number} width of the place, within which they stay while there is room [px]
+ */
+export function besideEachOther(dots, radius, width) {
+  const pitch = 2 * radius * PITCH;
+  /** @type {{ x: number, y: number }[]} */
+  const placed = [];
+  for (const { x, y } of dots) {
+    const shifts = placed.flatMap((_, n) => [(n + 1) * pitch, -(n + 1) * pitch]);
+    const isFree = (/** @type {number} */ shift) => x + shift >= radius && x + shift <= width - radius
+      && placed.every((other) => Math.hypot(other.x - x - shift, other.y - y) >= 2 * radius);
+    placed.push({ x: x + ([0, ...shifts].find(isFree) ?? 0), y });
+  }
+  return placed;
+}
