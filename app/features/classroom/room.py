@@ -76,6 +76,8 @@ class Room:
         finished: cache of the outcomes of finished runs, by id; `results` fills it.
         watched: ids of the runs that their participants have seen to the end, since the start of
             the server.
+        pressed: what the class pressed by step, by id of a training that it taught, since the start
+            of the server: the training's record has the means alone.
     """
 
     code: str
@@ -95,6 +97,7 @@ class Room:
     used_at: datetime = field(default=datetime.min.replace(tzinfo=UTC), compare=False)
     finished: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
     watched: set[str] = field(default_factory=set, compare=False, repr=False)
+    pressed: dict[str, list[Any]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def is_open(self) -> bool:

@@ -170,7 +170,9 @@ def show_card(
     services: ServicesDep, request: Request, code: CodePath, body: CardBody
 ) -> RecordResponse[RoomView]:
     """Show a card to all; participants can change the settings that it opens, and no others."""
-    if services.of(Rooms).get(code).card != body.card:
+    room = services.of(Rooms).get(code)
+    room.check_card(body.card)
+    if room.card != body.card:
         services.of(Teaching).stop(code, is_announced=False)
     room = services.of(Rooms).show_card(code, body.card)
     return RecordResponse(room_view(request, services, room, None))
@@ -205,7 +207,8 @@ def reveal_card(
     # The race is there before anything is revealed, so that no figure is told before it.
     race = _race_of_class(services, room, card)
     room = rooms.reveal(code, card, spotlight=None if race is None else race.id)
-    services.of(Teaching).race(room)
+    if card == room.card:
+        services.of(Teaching).race(room)
     shared = services.of(RoomStages).of(room.code)
     if race is not None and shared is not None:
         assert isinstance(race.config, RaceConfig)  # noqa: S101 - by `ClassRace`

@@ -77,7 +77,7 @@ class Rooms(RoomRegistry):
         """Store which run is on the room's stage; all participants may see it from then on.
 
         Raises:
-            NotFound: if it is no run of the room.
+            NotFound: if it is no run of the room, or was deleted.
             Conflict: if the room has ended, or the participant is not approved yet.
         """
         with self._lock:
@@ -88,8 +88,9 @@ class Rooms(RoomRegistry):
                 if run_id not in room.runs or room.runs[run_id].answer is not None:
                     raise NotFound(f"the room {room.code} has no run {run_id!r}")
                 runs = [room.runs[run_id]]
-                participant = room.participants[runs[0].seed]
-                if not participant.is_approved:
+                self._store.find(run_id)  # it may have been deleted
+                participant = room.participants.get(runs[0].seed)
+                if participant is not None and not participant.is_approved:
                     raise Conflict(f"{participant.name} is not approved yet; approve first", "open")
             self._rows.change_room(room.code, {"spotlight": run_id}, [run.run_id for run in runs])
             room.spotlight = run_id
@@ -98,22 +99,30 @@ class Rooms(RoomRegistry):
         return room
 
     def start_of_class(
-        self, code: str, given: Mapping[str, Any], start: Start, queue: Callable[[Start], Run]
+        self,
+        code: str,
+        card: int,
+        given: Mapping[str, Any],
+        start: Start,
+        queue: Callable[[Start], Run],
     ) -> Run:
         """Start a run of the whole class on the card that is shown, which all may see.
 
         Args:
             code: code of the room.
+            card: number of the card that is meant.
             given: what the run is, by name.
             start: the start.
             queue: queues it.
 
         Raises:
             NotFound: if there is no such room.
+            Forbidden: if another card is shown.
             Conflict: if it has ended.
         """
         with self._lock:
             room = self.get(code)
+            _check_shown(room, card)
             room.check_open()
             run = self._runs.start_of_class(room, given, start, queue)
         self._changed(room)

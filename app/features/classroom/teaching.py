@@ -111,8 +111,8 @@ class Teaching:
         self._lock = threading.RLock()
         self._books: dict[str, PressBook] = {}
         """By id of a training that is taught."""
-        self._pressed: dict[str, list[StepPresses]] = {}
-        """Presses by id of a training, of which its record has the means alone."""
+        self._to_race: set[str] = set()
+        """Ids of trainings that are taught, whose race begins once they have ended."""
         self._limiter = RateLimiter(_BURST, _PRESSES_PER_S)
 
     @property
@@ -138,12 +138,25 @@ class Teaching:
             if run is not None and run.state in NOT_ENDED:
                 raise Conflict("the class teaches already; end that first", run.state)
             # The rival first: it takes a second, while the other one holds a core for minutes.
-            for part in (RIVAL, TAUGHT):
-                run = self._rooms.start_of_class(
-                    code, {PART: part}, self._training(room.shown, part), self._core.jobs.start
-                )
-            self._follow(room, cast(Run, run))
+            rival = self._begin(room, RIVAL)
+            try:
+                taught = self._begin(room, TAUGHT)
+            except HexapodError:
+                self._end(rival)
+                raise
+            self._follow(room, taught)
         return room
+
+    def _begin(self, room: Room, part: str) -> Run:
+        start = self._training(room.shown, part)
+        return self._rooms.start_of_class(
+            room.code, room.card, {PART: part}, start, self._core.jobs.start
+        )
+
+    def _end(self, run: Run | None) -> None:
+        if run is not None and run.state in NOT_ENDED:
+            with suppress(Conflict, NotFound):  # it has ended meanwhile
+                self._core.jobs.stop(run.id)
 
     def stop(self, code: str, *, is_announced: bool = True) -> Room:
         """End the teaching of the card that is shown, if there is one; what was learned stays.
@@ -158,37 +171,46 @@ class Teaching:
         """
         room = self._rooms.get(code)
         for part in (TAUGHT, RIVAL):
-            run = self._part(room, part)
-            if run is not None and run.state in NOT_ENDED:
-                with suppress(Conflict, NotFound):  # it has ended meanwhile
-                    self._core.jobs.stop(run.id)
+            self._end(self._part(room, part))
         if is_announced and room.shown.teach is not None:
             self._publish(room, [])
         return room
 
     def freeze(self, room: Room) -> None:
         """Hold the robot of a room that is frozen, or let it go on."""
-        run = self._part(room, TAUGHT)
-        if run is None or run.state not in NOT_ENDED:
-            return
-        with suppress(HexapodError):  # it has ended meanwhile, or too many are paused
-            if room.is_frozen:
-                self._core.jobs.pause(run.id)
-            elif run.state == "paused":
-                self._core.jobs.resume(run.id)
+        # Locked, so that of a stop and a start at once the last one holds.
+        with self._lock:
+            run = self._part(room, TAUGHT)
+            if run is None or run.state not in NOT_ENDED:
+                return
+            with suppress(HexapodError):  # it has ended meanwhile, or too many are paused
+                if room.is_frozen:
+                    self._core.jobs.pause(run.id)
+                elif run.state == "paused":
+                    self._core.jobs.resume(run.id)
         self._publish(room, [])
 
     def race(self, room: Room) -> None:
-        """Let both robots race on the stage of a room whose card is revealed."""
-        runs = [run for part in (TAUGHT, RIVAL) if (run := self._part(room, part)) is not None]
-        if len(runs) < 2 or self._part(room, RACE) is not None:
-            return
-        self.stop(room.code)
-        threading.Thread(target=self._race, args=(room, runs), daemon=True).start()
+        """End the teaching of a room whose card is revealed; then both robots race on its stage.
 
-    def _race(self, room: Room, runs: list[Run]) -> None:
+        They race once, however often they are sent.
+        """
+        with self._lock:
+            taught, rival = self._part(room, TAUGHT), self._part(room, RIVAL)
+            if taught is None or rival is None or taught.id in self._to_race:
+                return
+            if self._race_of(room, taught) is not None:
+                return
+            self._to_race.add(taught.id)
+        args = room, room.card, [taught, rival]
+        threading.Thread(target=self._race, args=args, daemon=True).start()
+
+    def _race(self, room: Room, card: int, runs: list[Run]) -> None:
         """Start the race once both robots have ended; errors are logged: all else is revealed."""
         try:
+            for run in runs:
+                self._end(run)
+            self._publish(room, [])
             while any(self._core.store.get(run.id).state in NOT_ENDED for run in runs):
                 time.sleep(_EVERY_S)
             config = _config(runs[0])
@@ -199,11 +221,15 @@ class Teaching:
                 seed=0,
                 name=_name(room, "the class and the reward"),
             )
-            run = self._rooms.start_of_class(room.code, {PART: RACE}, race, self._core.jobs.start)
+            run = self._rooms.start_of_class(
+                room.code, card, {PART: RACE}, race, self._core.jobs.start
+            )
             self._show(room, run)
             self._publish(room, [])
         except HexapodError as error:
             _logger.info("the robots of the room %s do not race: %s", room.code, error)
+        finally:
+            self._to_race.discard(runs[0].id)
 
     # ---- of participants
 
@@ -230,19 +256,25 @@ class Teaching:
         wait_s = self._limiter.take(f"{room.code} {seed}")
         if wait_s > 0:
             raise Busy("you press faster than steps can be judged; slow down", math.ceil(wait_s))
-        run = self._part(room, TAUGHT)
-        if run is None or run.state not in NOT_ENDED:
-            raise Conflict("nothing is taught now; wait for the teacher to start", "ended")
+        run = _being_taught(self._part(room, TAUGHT))
         if run.id != run_id:
             raise Conflict("another robot is taught now; press for the one that you see", "other")
-        with self._lock:
-            if run.id not in self._books:  # the server was started again meanwhile
-                self._follow(room, run)
-            book = self._books[run.id]
+        book = self._book_of(room, run)
         shown = self._steps_shown(room, run)
         if shown is None:
             raise Conflict("the robot is not on the stage yet; press for what you see", "early")
         return book.add(seed, at_s / _config(run).robot.step_s, value, shown)
+
+    def _book_of(self, room: Room, run: Run) -> PressBook:
+        """Return the open presses of a run, which is followed again after a start of the server.
+
+        Raises:
+            NotFound, Conflict: if the run has ended meanwhile.
+        """
+        with self._lock:
+            if run.id not in self._books:
+                self._follow(room, _being_taught(self._core.store.get(run.id)))
+            return self._books[run.id]
 
     # ---- of all
 
@@ -256,7 +288,8 @@ class Teaching:
         teach = room.shown.teach
         if teach is None:
             raise NotFound(f"card {room.card} teaches nothing")
-        run, race = self._part(room, TAUGHT), self._part(room, RACE)
+        run = self._part(room, TAUGHT)
+        race = None if run is None else self._race_of(room, run)
         is_told = is_teacher or room.card in room.revealed
         config = self._training(room.shown, TAUGHT).config
         return TeachingView(
@@ -264,21 +297,11 @@ class Teaching:
             state=_state(room, run),
             steps=teach.steps,
             step_s=config.robot.step_s,
-            presses=[] if run is None else self._presses(run),
+            presses=[] if run is None else _presses(room, run),
             taught=_robot(run, race, is_told=is_told),
             rival=_robot(self._part(room, RIVAL), race, is_told=is_told),
             race_id=None if race is None else race.id,
         )
-
-    def _presses(self, run: Run) -> list[StepPresses]:
-        """Return the presses of a run; after a restart of the server their means alone."""
-        if run.id in self._pressed:
-            return list(self._pressed[run.id])
-        recorded = [press for change in run.changes for press in change.get("presses", ())]
-        return [
-            StepPresses(step=int(at_step), plus=int(value > 0), minus=int(value < 0), value=value)
-            for at_step, value in recorded
-        ]
 
     def _part(self, room: Room, part: str) -> Run | None:
         """Return the newest run of a part of the teaching of the card that is shown."""
@@ -295,6 +318,11 @@ class Teaching:
             return None
         return run if isinstance(run, Run) else None
 
+    def _race_of(self, room: Room, taught: Run) -> Run | None:
+        """Return the race of a robot that was taught; None while it has not raced."""
+        race = self._part(room, RACE)
+        return race if race is not None and taught.id in race.lane_training_ids else None
+
     def _training(self, card: Card, part: str) -> TrainingStart:
         """Return the start of the training of a part."""
         rival = cast(Teach, card.teach).rival
@@ -304,14 +332,14 @@ class Teaching:
 
     def _follow(self, room: Room, run: Run) -> None:
         """Show a training on the stage, and send it what the class presses until it ends."""
-        self._books[run.id], self._pressed[run.id] = PressBook(run.done), self._presses(run)
+        room.pressed[run.id] = _presses(room, run)
+        book = self._books[run.id] = PressBook(run.done)
         self._show(room, run)
         self._publish(room, [])
-        name = f"teaching {room.code}"
-        threading.Thread(target=self._send, args=(room, run.id), name=name, daemon=True).start()
+        args, name = (room, room.card, run.id, book), f"teaching {room.code}"
+        threading.Thread(target=self._send, args=args, name=name, daemon=True).start()
 
-    def _send(self, room: Room, run_id: str) -> None:
-        book = self._books[run_id]
+    def _send(self, room: Room, card: int, run_id: str, book: PressBook) -> None:
         try:
             while (run := self._core.store.get(run_id)).state in NOT_ENDED:
                 time.sleep(_EVERY_S)
@@ -324,8 +352,14 @@ class Teaching:
         except HexapodError as error:  # the run was deleted
             _logger.info("the teaching of the room %s has ended: %s", room.code, error)
         finally:
-            self._books.pop(run_id, None)
+            with self._lock:
+                self._books.pop(run_id, None)
             self._publish(room, [])
+        with self._lock:
+            newest = self._part(room, TAUGHT)
+            is_shown = card == room.card and newest is not None and newest.id == run_id
+            if is_shown and card in room.revealed:
+                self.race(room)  # it was taught once more after the reveal
 
     def _send_presses(self, room: Room, run_id: str, presses: list[ClassPress]) -> None:
         pairs = [[press.at_step, press.value] for press in presses]
@@ -337,7 +371,7 @@ class Teaching:
         shown = [
             StepPresses(step=p.step, plus=p.plus, minus=p.minus, value=p.value) for p in presses
         ]
-        self._pressed[run_id] += shown
+        room.pressed[run_id] += shown
         self._publish(room, shown)
 
     def _steps_shown(self, room: Room, run: Run) -> float | None:
@@ -362,6 +396,17 @@ class Teaching:
             shared.channel.publish("teaching", event)
 
 
+def _presses(room: Room, run: Run) -> list[StepPresses]:
+    """Return the presses of a run; after a start of the server their means alone."""
+    if run.id in room.pressed:
+        return list(room.pressed[run.id])
+    recorded = [press for change in run.changes for press in change.get("presses", ())]
+    return [
+        StepPresses(step=int(at_step), plus=int(value > 0), minus=int(value < 0), value=value)
+        for at_step, value in recorded
+    ]
+
+
 def _titled(title: str | None, part: str) -> str:
     return check_name(f"{title or 'A class teaches'} · {part}"[:MAX_NAME])
 
@@ -377,6 +422,17 @@ def _config(run: Run) -> TrainingConfig:
 def _check_teaches(room: Room) -> None:
     if (refusal := room.refusal("press")) is not None:
         raise Forbidden(refusal)
+
+
+def _being_taught(run: Run | None) -> Run:
+    """Return a training that goes on.
+
+    Raises:
+        Conflict: if there is none, or it has ended.
+    """
+    if run is None or run.state not in NOT_ENDED:
+        raise Conflict("nothing is taught now; wait for the teacher to start", "ended")
+    return run
 
 
 def _state(room: Room, run: Run | None) -> Literal["ready", "teaching", "frozen", "ended"]:

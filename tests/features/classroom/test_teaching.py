@@ -1,6 +1,7 @@
 """A class that teaches a robot over REST: presses, what is refused, and what it has learned."""
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from app.features.classroom.lesson import read_lesson
+from app.features.classroom.rooms import Rooms
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -142,6 +144,83 @@ def test_both_robots_race_at_the_reveal_and_distances_are_told_then(school: Clas
     told = pupil.get(f"/rooms/{code}/teaching")
     walked = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
     assert [told[robot]["distance_m"] for robot in ("taught", "rival")] == walked
+
+
+def test_a_card_that_is_not_there_ends_no_teaching(school: Class) -> None:
+    code = school.room(LESSON)
+    run_id = begun(school, code)
+    refused(school.teacher.call("PUT", f"/rooms/{code}/card", json={"card": 40}), 404, "0 to 1")
+    refused(school.teacher.call("POST", f"/rooms/{code}/reveal", json={"card": 40}), 404)
+    school.teacher.call("POST", f"/rooms/{code}/reveal", json={"card": 1})
+
+    assert school.teacher.get(f"/rooms/{code}/teaching")["state"] == "teaching"
+    assert school.teacher.look({"kind": "training", "id": run_id})["state"] == "running"
+
+
+def raced(school: Class, code: str) -> dict[str, Any]:
+    """Return the teaching of a room once its robots have raced."""
+    view: dict[str, Any] = school.teacher.get(f"/rooms/{code}/teaching")
+    while view["race_id"] is None:
+        view = school.teacher.get(f"/rooms/{code}/teaching")
+    return view
+
+
+def test_a_reveal_that_is_pressed_thrice_at_once_begins_one_race(school: Class) -> None:
+    code = school.room(LESSON)
+    begun(school, code)
+    with ThreadPoolExecutor(3) as threads:
+        path = f"/rooms/{code}/reveal"
+        answers = [threads.submit(school.teacher.call, "POST", path) for _ in range(3)]
+    school.finished({"kind": "race", "id": raced(school, code)["race_id"]})
+    races = [
+        run.run_id
+        for run in school.services.of(Rooms).get(code).runs.values()
+        if run.given == {"teach": "race"}
+    ]
+
+    assert [answer.result().status_code for answer in answers] == [200] * 3
+    assert len(races) == 1
+
+
+def test_a_class_that_teaches_again_after_the_reveal_sees_that_robot_race(school: Class) -> None:
+    code = school.room(LESSON)
+    begun(school, code)
+    school.teacher.call("POST", f"/rooms/{code}/reveal")
+    first = raced(school, code)
+    run_id = begun(school, code)
+    again = school.teacher.get(f"/rooms/{code}/teaching")
+    school.teacher.call("DELETE", f"/rooms/{code}/teaching")
+    second = raced(school, code)
+
+    assert again["race_id"] is None
+    assert second["race_id"] != first["race_id"]
+    assert second["taught"]["run_id"] == run_id
+
+
+def test_the_robot_of_the_class_is_put_into_the_light_until_it_is_deleted(school: Class) -> None:
+    code = school.room(LESSON)
+    run_id = begun(school, code)
+    school.teacher.call("DELETE", f"/rooms/{code}/teaching")
+    body, path = {"run_id": run_id}, f"/rooms/{code}/spotlight"
+    lit = school.teacher.call("PUT", path, json=body)
+    school.teacher.until({"kind": "training", "id": run_id}, lambda now: now["state"] == "stopped")
+    school.teacher.call("DELETE", f"/trainings/{run_id}")
+
+    assert lit.status_code == 200
+    refused(school.teacher.call("PUT", path, json=body), 404, "There is no run")
+
+
+def test_a_room_that_stops_and_goes_on_in_a_hurry_does_not_stay_stopped(school: Class) -> None:
+    code = school.room(LESSON)
+    run_id = begun(school, code)
+    with ThreadPoolExecutor(4) as threads:
+        for number in range(12):
+            body = {"frozen": number % 2 == 0}
+            threads.submit(school.teacher.call, "POST", f"/rooms/{code}/freeze", json=body)
+    view = school.teacher.get(f"/rooms/{code}/teaching")
+    run = school.teacher.look({"kind": "training", "id": run_id})
+
+    assert (view["state"], run["state"]) in [("teaching", "running"), ("frozen", "paused")]
 
 
 def test_a_card_that_teaches_can_be_started_when_it_is_stored(school: Class) -> None:
