@@ -1,5 +1,6 @@
 """Valid values of each field in words, for validation errors and the OpenAPI document."""
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -119,7 +120,7 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
         path = [key for key in error["loc"] if key in fields or isinstance(key, int)]
         if error["type"] == "json_invalid":
             path = []
-        elif not path and error["type"] not in _NO_OBJECT:
+        elif not any(isinstance(key, str) for key in path) and error["type"] not in _NO_OBJECT:
             # Of a record whose fields say by themselves what is valid, such as `choices`.
             path = [key for key in error["loc"][1:] if isinstance(key, str | int)]
         field = ".".join(str(key) for key in path)
@@ -139,8 +140,8 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
     if not names:
         return "The request's body must be a JSON object, sent as application/json."
     is_missing = error["type"] == "missing"
-    valid = _formats(names[-1], error) or VALID.get(field) or VALID.get(names[-1])
-    valid = valid or _length(error)
+    valid = VALID.get(field) or VALID.get(names[-1])
+    valid = _choices(error, valid) or valid or _length(error)
     if valid is None and not is_missing:
         is_unknown = error["type"] == "unexpected_keyword_argument"
         return f"{field}: {'there is no such field' if is_unknown else error['msg'].lower()}."
@@ -148,12 +149,16 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
     return f"{field} {'is missing; it ' if is_missing else ''}must be {valid}."
 
 
-def _formats(name: str, error: Mapping[str, Any]) -> str | None:
-    """Return the formats of the route in words; None if the error is about another field."""
-    if name != "format" or error["type"] != "literal_error":
+def _choices(error: Mapping[str, Any], valid: str | None) -> str | None:
+    """Return the choices of a field in words, unless what is valid by its name has them all.
+
+    Fields of the same name have other choices on other routes, such as `kind` and `format`.
+    """
+    if error["type"] != "literal_error":
         return None
-    expected: str = error["ctx"]["expected"]
-    return expected.replace("'", "")
+    choices: str = error["ctx"]["expected"].replace("'", "")
+    has_all = all(choice in (valid or "") for choice in re.split(r", | or ", choices))
+    return None if has_all else choices
 
 
 _OF_LENGTH = {"too_short": ("at least", "min_length"), "too_long": ("at most", "max_length")}

@@ -192,7 +192,7 @@ def test_presses_are_recorded_where_the_agent_learns_from_them(api: Api) -> None
     now = api.call("PATCH", path, json={"presses": [[0, 1], [0.5, -0.25]]}).json()
     assert now["changes"][-1]["presses"] == [[0, 1], [0.5, -0.25]]
     for presses in ([], [[1]], [[-1, 1]], [[1, 2]], [[1, True]], [[1, 1]] * 101, "+"):
-        refused(api.call("PATCH", path, json={"presses": presses}), 422)
+        refused(api.call("PATCH", path, json={"presses": presses}), 422, "presses")
     api.stop(run)
     other = api.slow_training()
     answer = api.call("PATCH", f"/trainings/{other['id']}", json={"presses": [[0, 1]]})

@@ -51,4 +51,6 @@ def test_a_figure_is_returned_as_a_picture_and_as_an_archive(
     assert pdf.startswith(b"%PDF-")
     assert api.call("GET", f"{path}?kind=comparison&{chosen}&format=pdf").content == pdf
     refused(api.call("GET", f"{path}?kind=comparison"), 422, "of two settings, and 0 are named")
-    refused(api.call("GET", f"{path}?columns=3"), 422)
+    refused(api.call("GET", f"{path}?columns=3"), 422, "must be 1 or 2")
+    refused(api.call("GET", f"{path}?kind=x"), 422, "must be seeds, comparison or profile")
+    refused(api.call("GET", f"{path}?setting={'x' * 1001}"), 422, "at most 1000 characters")
