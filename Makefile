@@ -137,29 +137,38 @@ check-page-types: $(PAGE_STAMP)
 docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs build/docs
 
-# Hatchling builds the wheel from the unpacked sdist: whoever has the sdist alone gets the same.
+# The wheel is built from the unpacked sdist: whoever has the sdist alone gets the same. Away from the
+# repository, whose .gitignore would hide from the linter what is below build/.
+unpack_sdist = folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
+	tar --extract --gzip --file dist/*.tar.gz --directory "$$folder" --strip-components 1
+
 .PHONY: distributions
 distributions: $(DEV_STAMP) ## Build sdist and wheel in dist/, and check what an index reads of them
-	rm -rf dist build/sdist && mkdir -p build/sdist
+	rm -rf dist
 	$(BIN)/python -m hatchling build --target sdist --directory dist
-	tar --extract --gzip --file dist/*.tar.gz --directory build/sdist --strip-components 1
-	cd build/sdist && $(CURDIR)/$(BIN)/python -m hatchling build --target wheel --directory $(CURDIR)/dist
+	$(unpack_sdist) && cd "$$folder" && \
+		$(CURDIR)/$(BIN)/python -m hatchling build --target wheel --directory $(CURDIR)/dist
 	$(BIN)/twine check --strict dist/*
 
-# Away from the repository: its .gitignore would hide from the linter what is below build/.
 .PHONY: check-sdist
 check-sdist: ## Run the first tier of checks in the sdist of dist/, in an environment of its own
-	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
-		tar --extract --gzip --file dist/*.tar.gz --directory "$$folder" --strip-components 1 && \
-		$(MAKE) --no-print-directory -C "$$folder" check
+	$(unpack_sdist) && $(MAKE) --no-print-directory -C "$$folder" check
+
+.PHONY: paper
+paper: $(DEV_STAMP) ## Build the paper on the software in build/paper, as HTML and PDF
+	$(BIN)/python -m paper.build
+
+.PHONY: paper-results
+paper-results: $(DEV_STAMP) ## Repeat the experiment of the paper, and write its figures and numbers anew
+	$(BIN)/python -m paper.computed
 
 .PHONY: release-check
 release-check: ## Rehearse a release as far as it goes without publishing; docs/releasing.md
 	@$(MAKE) --no-print-directory distributions
 	@$(MAKE) --no-print-directory check-sdist
-	@$(MAKE) --no-print-directory docs
+	@$(MAKE) --no-print-directory docs paper
 	$(BIN)/python -m pytest tests/test_release.py tests/test_release_check.py tests/test_workflows.py \
-		tests/test_container.py tests/test_distribution.py tests/test_wheel.py
+		tests/test_paper.py tests/test_container.py tests/test_distribution.py tests/test_wheel.py
 	@$(MAKE) --no-print-directory release-missing
 
 .PHONY: release-missing
