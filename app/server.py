@@ -15,6 +15,7 @@ from types import FrameType
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from fastapi.routing import iter_route_contexts
+from starlette.middleware.cors import CORSMiddleware
 from starlette.routing import BaseRoute
 
 from app.active_features import Features
@@ -184,6 +185,14 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     guard_everything(app, guards)
     _check_public_path(app.routes, settings.public_path)
     # The middleware that is added last runs first.
+    if settings.cors_origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=settings.cors_origins,
+            allow_methods=("GET", "POST", "PUT", "PATCH", "DELETE"),
+            allow_headers=("Authorization", "Content-Type", "Idempotency-Key", "X-Requested-With"),
+            expose_headers=("Location", "Retry-After", "Content-Disposition"),
+        )
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(IncompleteBodyGuard)
     app.add_middleware(ProblemPages)

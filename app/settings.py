@@ -65,6 +65,7 @@ class Settings:
             or `https://school.example/hex/` with a path.
         frame_ancestors: origins whose pages may have the server's in a frame, beside its own.
         allowed_hosts: further host names by which the server may be called.
+        cors_origins: origins of other pages whose scripts may call the API, as who has the token.
         trusted_proxies: addresses and networks of the proxies whose `X-Forwarded-For` and
             `X-Forwarded-Proto` are believed; of other clients these headers are ignored.
         database_url: URL of a PostgreSQL database, which may hold a password; None for SQLite in
@@ -89,6 +90,7 @@ class Settings:
     public_url: str | None = text(None, check_public_url)
     frame_ancestors: tuple[str, ...] = names(check_origin, ignores_case=True)
     allowed_hosts: tuple[str, ...] = names(check_host_name, ignores_case=True)
+    cors_origins: tuple[str, ...] = names(check_origin, ignores_case=True)
     trusted_proxies: tuple[str, ...] = names(check_network, ignores_case=True)
     database_url: str | None = text(None, check_database_url, is_secret=True)
     quota_mb: int | None = whole_number(None, MIN_QUOTA_MB, unit=" of megabytes")

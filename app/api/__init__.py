@@ -6,8 +6,8 @@
 - Requests: `agent_bodies`, `schemas`, `fields`, `descriptions`, `formats`.
 - Answers: `record_response` (returns a record), `answers`, `run_views` (with kinds of runs that
   features add), `recorded_answers`, `option_answers` (from `option_texts` and `robot_options`),
-  `event_answers`, `curves`, `problems` (RFC 9457), `templates` (web pages), `compression`;
-  `budgeted_chunks` (of what slow clients read).
+  `event_answers`, `curves`, `problems` (RFC 9457, with their `problem_types`), `templates` (web
+  pages), `compression`; `budgeted_chunks` (of what slow clients read).
 - `contract` completes the OpenAPI document, by `shared_schemas` where bodies have the same;
   `deps` injects services and the stage.
 - `policy` says of each route who may use it and what it costs, by kinds of `work`. `guards`

@@ -16,6 +16,7 @@ from app.api.cookies import NAME
 from app.api.event_answers import event_bodies
 from app.api.identity import IdentityProvider
 from app.api.policy import Access, RoutePolicy, policies
+from app.api.problem_types import FOLDER, TYPES
 from app.api.problems import MEDIA_TYPE
 from app.api.shared_schemas import name_schemas, share, shared_schemas
 from app.feature import Feature
@@ -43,7 +44,10 @@ class ProblemDetails(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    type: str
+    type: str = Field(
+        description="what kind of error it is, by which a client can branch: the path of a page, "
+        f"one of {', '.join(FOLDER + name for name in TYPES)}"
+    )
     title: str
     status: int = Field(ge=400, le=599)
     detail: str = Field(description="one sentence or two, naming what is valid")

@@ -9,6 +9,7 @@ from app.storage.run_kind import run_kinds
 from hexapods.domain import disturbances
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.observation import OBSERVATIONS
+from hexapods.domain.records import refusal_in
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
@@ -102,6 +103,11 @@ VALID: dict[str, str] = {
 }
 
 
+def as_sentence(message: str) -> str:
+    """Return the message of an error as a sentence."""
+    return message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
+
+
 _NO_OBJECT = frozenset({"model_type", "model_attributes_type", "dict_type", "dataclass_type"})
 """Types of Pydantic's errors about a body that is no JSON object."""
 
@@ -124,7 +130,9 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
             # Of a record whose fields say by themselves what is valid, such as `choices`.
             path = [key for key in error["loc"][1:] if isinstance(key, str | int)]
         field = ".".join(str(key) for key in path)
-        details.setdefault(field, _sentence(field, error, path))
+        refusal = refusal_in([error])
+        detail = _sentence(field, error, path) if refusal is None else as_sentence(str(refusal))
+        details.setdefault(field, detail)
     return [{"field": field, "detail": detail} for field, detail in details.items()]
 
 

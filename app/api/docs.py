@@ -1,4 +1,4 @@
-"""The OpenAPI document, and an HTML page without scripts that is rendered from it."""
+"""The OpenAPI document, and pages without scripts: one rendered from it, and types of problems."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -8,9 +8,11 @@ from fastapi import Request
 from starlette.responses import HTMLResponse, Response
 
 from app.api.compression import CompressedContent
-from app.api.policy import WATCH, api_router, policy
+from app.api.policy import PUBLIC, WATCH, api_router, policy
+from app.api.problem_types import FOLDER, TYPES
 from app.api.public_path import public_path_of
 from app.api.templates import render as render_template
+from app.storage.errors import NotFound
 
 router = api_router(include_in_schema=False)
 
@@ -44,6 +46,31 @@ def get_openapi(request: Request) -> Response:
 def get_docs(request: Request) -> Response:
     """Return every route with its fields, rendered from `/openapi.json`."""
     return HTMLResponse(render(request.app.openapi(), str(request.base_url).rstrip("/")))
+
+
+@router.get("/problems")
+@policy(access=PUBLIC)
+def list_problems() -> HTMLResponse:
+    """Return a page with all types of problems."""
+    return HTMLResponse(
+        render_template("problem_types.html", prefix=FOLDER, types=TYPES, home="./")
+    )
+
+
+@router.get("/problems/{name}")
+@policy(access=PUBLIC)
+def get_problem(name: str) -> HTMLResponse:
+    """Return the page of a type of problem.
+
+    Raises:
+        NotFound: if there is no such type.
+    """
+    if name not in TYPES:
+        raise NotFound(f"there is no type of problem {name!r}; there are {', '.join(TYPES)}")
+    shown = {name: TYPES[name]}
+    return HTMLResponse(
+        render_template("problem_types.html", prefix=FOLDER, types=shown, home="../")
+    )
 
 
 def render(schema: Mapping[str, Any], base: str) -> str:

@@ -29,7 +29,8 @@ _FOREIGN_HOST = (
 )
 _FOREIGN_PAGE = (
     "This request comes from a page of another origin, which another port is too; use this "
-    "server's own page, or name the page's address in HEXAPODS_PUBLIC_URL."
+    "server's own page, or name the page's address in HEXAPODS_PUBLIC_URL, or in "
+    "HEXAPODS_CORS_ORIGINS."
 )
 _FORM_REQUEST = (
     "A form of another page could send this; add the header X-Requested-With, or send a body as "
@@ -55,26 +56,45 @@ class HostGuard(HttpMiddleware):
         self._origins = {
             _origin(origin) for origin in (*allowed_origins, settings.public_origin or "")
         } - {None}
+        self._cors_origins = frozenset(settings.cors_origins)
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or refuse with 403."""
-        refusal = self._refusal(scope["method"], Headers(scope=scope))
-        answer = self._app if refusal is None else problem(403, refusal)
+        headers = Headers(scope=scope)
+        if is_cors := self._is_of_cors(headers):
+            # A script of another page acts by the token that it has, never by the cookie of a
+            # person whose browser runs it.
+            scope = {**scope, "state": {**scope["state"], "cookies": {}}}
+        refusal = self._refusal(scope["method"], headers, is_cors=is_cors)
+        answer = self._app if refusal is None else problem(403, refusal, kind="foreign-request")
         await answer(scope, receive, send)
 
-    def _refusal(self, method: str, headers: Headers) -> str | None:
-        hosts, origins = headers.getlist("host"), headers.getlist("origin")
-        host = _split(f"//{hosts[0]}") if len(hosts) == 1 else None
+    def _is_of_cors(self, headers: Headers) -> bool:
+        """Whether a request comes from a script of a page of the origins in `cors_origins`."""
+        origins, host = headers.getlist("origin"), _host(headers)
+        if len(origins) != 1 or origins[0].lower() not in self._cors_origins:
+            return False
+        return host is not None and not self._is_own_page(origins[0], host)
+
+    def _refusal(self, method: str, headers: Headers, *, is_cors: bool) -> str | None:
+        origins, host = headers.getlist("origin"), _host(headers)
         if host is None or not self._is_own_host(host[0]):
             return _FOREIGN_HOST
+        if not is_cors and (why := self._refusal_of_page(method, headers, origins, host)):
+            return why
+        if method not in _SAFE_METHODS and _is_form_request(headers):
+            return _FORM_REQUEST
+        return None
+
+    def _refusal_of_page(
+        self, method: str, headers: Headers, origins: list[str], host: tuple[str, int | None]
+    ) -> str | None:
         if origins and not (len(origins) == 1 and self._is_own_page(origins[0], host)):
             return _FOREIGN_PAGE
         if not _OWN_SITES.issuperset(headers.getlist("sec-fetch-site")) and not (
             method in _SAFE_METHODS and self._is_navigation(headers)
         ):
             return _FOREIGN_PAGE
-        if method not in _SAFE_METHODS and _is_form_request(headers):
-            return _FORM_REQUEST
         return None
 
     def _is_navigation(self, headers: Headers) -> bool:
@@ -110,6 +130,12 @@ def _is_form_request(headers: Headers) -> bool:
         return False
     types = headers.getlist("content-type") or [""]
     return any(media_type.partition(";")[0].strip().lower() in _FORM_TYPES for media_type in types)
+
+
+def _host(headers: Headers) -> tuple[str, int | None] | None:
+    """Return the name and the port of the server by a request's Host; None for any but one."""
+    hosts = headers.getlist("host")
+    return _split(f"//{hosts[0]}") if len(hosts) == 1 else None
 
 
 def _split(address: str) -> tuple[str, int | None] | None:

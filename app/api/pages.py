@@ -21,9 +21,10 @@ from starlette.types import Scope
 
 from app.api.compression import CompressedContent
 from app.api.deps import PageFiles, Services
+from app.api.descriptions import as_sentence
 from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, RoutePolicy, policy
 from app.api.problem_pages import prefers_html
-from app.api.problems import as_sentence, problem
+from app.api.problems import problem
 from app.storage.errors import NotFound
 
 _INLINE_SCRIPT = re.compile(

@@ -1,7 +1,6 @@
 """Problem documents as web pages, for people whose browser opened an address that is refused."""
 
 import json
-from http import HTTPStatus
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse
@@ -55,9 +54,9 @@ def prefers_html(headers: Headers) -> bool:
 
 
 def _page(start: Message, body: bytes, home: str) -> HTMLResponse:
-    status = HTTPStatus(start["status"])
-    page = render("problem.html", title=status.phrase, detail=json.loads(body)["detail"], home=home)
-    response = HTMLResponse(page, status)
+    problem = json.loads(body)
+    page = render("problem.html", title=problem["title"], detail=problem["detail"], home=home)
+    response = HTMLResponse(page, start["status"])
     for name, value in MutableHeaders(scope=start).items():
         if name not in ("content-type", "content-length"):
             response.headers.append(name, value)

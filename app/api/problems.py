@@ -14,36 +14,17 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import compile_path
 
-from app.api.descriptions import field_errors
+from app.api.descriptions import as_sentence, field_errors
+from app.api.problem_types import FOLDER, TYPES, type_of_error, type_of_status
 from app.api.public_path import public_path_of
 from app.api.stage_paths import path_of
-from app.storage.errors import (
-    Busy,
-    Conflict,
-    Forbidden,
-    Gone,
-    NotAnswering,
-    NotFound,
-    StorageFailed,
-    StorageFull,
-)
+from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from hexapods.domain.errors import HexapodError, ImpossibleLegs, InvalidInput
 from hexapods.domain.records import refusal_in
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
 _STORAGE_RETRY_S = 10
-STATUSES: dict[type[HexapodError], int] = {
-    InvalidInput: 422,
-    Forbidden: 403,
-    NotFound: 404,
-    Gone: 410,
-    Conflict: 409,
-    Busy: 429,
-    StorageFull: 507,
-    StorageFailed: 503,
-    NotAnswering: 503,
-}
 _logger = logging.getLogger(__name__)
 
 _DETAILS = {
@@ -59,6 +40,7 @@ def problem(
     detail: str,
     errors: Sequence[Mapping[str, Any]] | None = None,
     headers: Mapping[str, str] | None = None,
+    kind: str | None = None,
     **more: Any,
 ) -> Response:
     """Return a response with a problem document.
@@ -68,11 +50,13 @@ def problem(
         detail: one or two sentences for the user, naming what is valid.
         errors: invalid fields, each with `field` and `detail`.
         headers: headers of the response.
+        kind: name of its type (`problem_types`); None for that of its status.
         more: further members of the document.
     """
+    kind = kind or type_of_status(status)
     body = {
-        "type": "about:blank",
-        "title": HTTPStatus(status).phrase,
+        "type": "about:blank" if kind is None else f"{FOLDER}{kind}",
+        "title": HTTPStatus(status).phrase if kind is None else TYPES[kind].title,
         "status": status,
         "detail": detail if len(detail) <= MAX_DETAIL else detail[: MAX_DETAIL - 1] + "…",
         **more,
@@ -81,11 +65,6 @@ def problem(
         body["errors"] = list(errors)
     # Escaped to ASCII, because a message may quote invalid Unicode.
     return Response(json.dumps(body), status, headers, MEDIA_TYPE)
-
-
-def as_sentence(message: str) -> str:
-    """Return the message of an error as a sentence."""
-    return message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
 
 
 def install(app: FastAPI) -> None:
@@ -99,8 +78,8 @@ def install(app: FastAPI) -> None:
 async def hexapod_error(request: Request, error: Exception) -> Response:
     """Return the problem that an error of the product is answered with."""
     sentence = as_sentence(str(error))
-    status = next((code for kind, code in STATUSES.items() if isinstance(error, kind)), None)
-    if status is None:
+    kind = type_of_error(error)
+    if kind is None:
         return await _unexpected(request, error)
     match error:
         case Conflict(state=state):
@@ -115,15 +94,20 @@ async def hexapod_error(request: Request, error: Exception) -> Response:
             more = {"field": field}
         case _:
             more = {}
-    return problem(status, sentence, **more)
+    return problem(TYPES[kind].status, sentence, kind=kind, **more)
 
 
 async def _validation_error(request: Request, error: Exception) -> Response:
     raw = error.errors() if isinstance(error, RequestValidationError) else []
-    if (refusal := refusal_in(raw)) is not None:
+    refusal = refusal_in(raw)
+    if refusal is not None and len(raw) == 1:
         return await hexapod_error(request, refusal)
     errors = field_errors(raw)
-    return problem(422, " ".join(e["detail"] for e in errors[:3]), errors)
+    detail = " ".join(entry["detail"] for entry in errors[:3])
+    # `errors` is of fields that are wrong by themselves, which none of several refusals says.
+    if all(refusal_in([entry]) is not None for entry in raw):
+        return problem(422, detail)
+    return problem(422, detail, errors)
 
 
 async def _http_error(request: Request, error: Exception) -> Response:

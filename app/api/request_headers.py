@@ -14,6 +14,8 @@ READ = frozenset(
     {
         "accept",
         "accept-encoding",
+        "access-control-request-headers",
+        "access-control-request-method",
         "authorization",
         "content-length",
         "content-type",

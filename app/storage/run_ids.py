@@ -7,6 +7,7 @@ import secrets
 import threading
 import time
 
+from app.storage.database.listing import cursor_before
 from app.storage.database.store import RunStore
 
 _DIGITS = "0123456789abcdefghjkmnpqrstvwxyz"
@@ -38,7 +39,7 @@ class RunIds:
         the range of ids.
         """
         plausible_ms = max(_now_ms(), _RELEASE_MS) + _MAX_CLOCK_LEAD_MS
-        newest = store.list(limit=1, cursor=_id(plausible_ms, 0)).items
+        newest = store.list(limit=1, cursor=cursor_before(_id(plausible_ms, 0))).items
         return cls(after=newest[0].id if newest else None)
 
     def __call__(self) -> str:

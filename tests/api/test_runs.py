@@ -115,6 +115,7 @@ def test_an_invalid_annotation_is_refused_and_changes_nothing(api: Api) -> None:
     refused(api.call("PATCH", "/runs/nothing", json={"name": "a"}), 404, "nothing")
     refused(api.call("GET", "/runs?sort=size"), 422, "newest, oldest, name, distance")
     refused(api.call("GET", "/runs?sort=name&cursor=abc"), 422, "must be the next_cursor")
+    refused(api.call("GET", "/trainings?cursor=abc"), 422, "must be the next_cursor")
 
 
 def test_several_runs_are_deleted(api: Api) -> None:

@@ -21,6 +21,7 @@ TOKEN = "a-token-for-tests"
 COOKIE = f"{NAME}_8000"
 SAFE = {"GET", "HEAD"}
 WHAT_IF, ROBOTS = "/api/v1/what-if", "/api/v1/robots"
+PROBLEMS = ("/problems", "/problems/{name}")
 VIEWS = {"/runs", "/compare", "/experiments", "/lessons"}
 """Addresses of the page, which has no data in it."""
 OPERATORS_READ = {"/l/{lesson_id}/sheet"}
@@ -119,7 +120,7 @@ def test_policies_open_to_spectators_what_they_are_meant_to(shared: Serve) -> No
     public = {
         path for (_, path), policy in everything.items() if policy.access.spectators == "always"
     }
-    assert public == {"/", *VIEWS, "/healthz", "/readyz", "/static", *BY_CODE}
+    assert public == {"/", *VIEWS, *PROBLEMS, "/healthz", "/readyz", "/static", *BY_CODE}
     assert policy_without_route({"type": "http", "method": "PUT"}).access.spectators == "never"
 
 

@@ -13,9 +13,21 @@ from typing import Any
 
 import pytest
 
+from app.storage.database.listing import cursor_before
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, SORTS, AnyRun, DamagedRun, Run, State
+from app.storage.run import (
+    LIVE,
+    NOT_ENDED,
+    QUEUED,
+    RUNNING,
+    SORTS,
+    AnyRun,
+    DamagedRun,
+    Run,
+    Sort,
+    State,
+)
 from app.storage.run_ids import RunIds
 from hexapods.domain.disturbances import Slope
 from hexapods.domain.errors import InvalidInput
@@ -124,11 +136,26 @@ def test_unknown_run_raises_not_found(store: RunStore) -> None:
 
 
 @pytest.mark.parametrize("cursor", ["", "a\0", "\ud800", "zzzz", "c"])
-def test_any_text_is_accepted_as_a_cursor(store: RunStore, cursor: str) -> None:
+@pytest.mark.parametrize("sort", SORTS)
+def test_a_text_that_is_no_cursor_is_refused(store: RunStore, sort: Sort, cursor: str) -> None:
     store.create(training("b"), training("d"))
-    assert [run.id for run in store.list(cursor=cursor).items] == [
-        run_id for run_id in ("d", "b") if run_id < cursor
-    ]
+    with pytest.raises(InvalidInput, match="cursor must be the next_cursor") as refusal:
+        store.list(sort=sort, cursor=cursor)
+    assert refusal.value.field == "cursor"
+
+
+def test_a_cursor_is_of_lists_in_one_order(store: RunStore) -> None:
+    store.create(training("b"), training("c"), training("d"))
+    newest = store.list(limit=1).next_cursor
+    assert [run.id for run in store.list(cursor=newest).items] == ["c", "b"]
+    for sort in set(SORTS) - {"newest"}:
+        with pytest.raises(InvalidInput, match="of a list in the same order"):
+            store.list(sort=sort, cursor=newest)
+
+
+def test_a_list_can_begin_before_any_id(store: RunStore) -> None:
+    store.create(training("b"), training("d"))
+    assert [run.id for run in store.list(cursor=cursor_before("c")).items] == ["b"]
 
 
 def test_list_filters_by_kind_and_state_and_paginates(store: RunStore) -> None:
@@ -144,7 +171,7 @@ def test_list_filters_by_kind_and_state_and_paginates(store: RunStore) -> None:
     assert listed(state="running") == ["t1", "r1"]
     assert listed(kind="training", state="finished", limit=1) == ["t2"]
     page = store.list(kind="race", limit=2)
-    assert page.next_cursor == "r1"
+    assert [run.id for run in page.items] == ["r2", "r1"]
     assert store.list(kind="race", limit=2, cursor=page.next_cursor).next_cursor is None
 
 
@@ -240,8 +267,9 @@ def test_a_forged_cursor_is_taken_or_refused(store: RunStore) -> None:
     keys = [0.5, 5, -0.0, 1e999, math.nan, True, None, "b", "a\0", "\ud800", [0.5], {"a": "b"}]
     ids = ["a", "", 5, True, None, "a\0", "\ud800", "damaged-", [0.5]]
     for key in [*product(keys, ids), ["b"], [0.5, "b", "c"], {"a": 1, "b": 2}, 7, "ab"]:
-        cursor = base64.urlsafe_b64encode(json.dumps(key).encode()).decode()
         for sort in SORTS:
+            forged = [sort, *key] if isinstance(key, list | tuple) else key
+            cursor = base64.urlsafe_b64encode(json.dumps(forged).encode()).decode()
             with contextlib.suppress(InvalidInput):
                 store.list(sort=sort, cursor=cursor)
     for text in ("[" * 1400, "9" * 1400, "[0.5, ", "\xff"):

@@ -25,9 +25,10 @@ from app.api.cookies import (
     name_of_server,
 )
 from app.api.deps import Services
+from app.api.descriptions import as_sentence
 from app.api.identity import Identity
 from app.api.policy import ANY_PAGE, QUESTION, WATCH_RUN, WATCH_STAGE, Access
-from app.api.problems import as_sentence, problem
+from app.api.problems import problem
 from app.api.stage_paths import stage_of
 from app.api.work import OTHER, Work
 from app.features.classroom.names import CODE, normalized

@@ -9,9 +9,10 @@ from starlette.routing import BaseRoute
 
 from app.api.compression import CompressedContent
 from app.api.deps import Services
+from app.api.descriptions import as_sentence
 from app.api.pages import page_of
 from app.api.policy import OPERATOR, WATCH, GuardedPage, RoutePolicy, policy
-from app.api.problems import as_sentence, problem
+from app.api.problems import problem
 from app.api.stage_paths import stage_of
 from app.features.classroom.access import BY_CODE
 from app.features.classroom.lesson_sheet import sheet_of

@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import Request
 
 from app.api.deps import Services
-from app.api.problems import as_sentence
+from app.api.descriptions import as_sentence
 from app.api.spectators import link_to
 from app.features.tournaments.access import Reader
 from app.features.tournaments.response_models import (

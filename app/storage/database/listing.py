@@ -7,7 +7,8 @@ that no damaged row fails or repeats a page.
 import base64
 import binascii
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import NoneType
 from typing import Any, NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, Double, String, and_, cast, func, or_, select
@@ -83,8 +84,7 @@ def fetch_page(connection: Connection, listing: Listing) -> RowPage:
     if len(rows_and_next) <= listing.limit:
         return RowPage(rows, None)
     last = rows_and_next[listing.limit - 1]
-    cursor = public_id(last["id"])
-    return RowPage(rows, cursor if key is None else _encode_cursor(last[_KEY], cursor))
+    return RowPage(rows, _encode_cursor(listing.sort, last.get(_KEY), public_id(last["id"])))
 
 
 def _filters(connection: Connection, listing: Listing) -> list[ColumnElement[bool]]:
@@ -131,28 +131,48 @@ def _sort_key(connection: Connection, sort: Sort) -> ColumnElement[Any] | None:
 def _is_after_cursor(
     connection: Connection, sort: Sort, key: ColumnElement[Any] | None, cursor: str
 ) -> ColumnElement[bool]:
+    value, run_id = _decode_cursor(cursor, sort)
     if key is None:
         after = sorts_after if sort == "oldest" else sorts_before
-        return after(connection, cursor)
-    value, run_id = _decode_cursor(cursor, float if sort == "distance" else str)
+        return after(connection, run_id)
     is_beyond = key > value if sort == "name" else key < value
     return or_(is_beyond, and_(key == value, sorts_before(connection, run_id)))
 
 
-def _encode_cursor(key: object, run_id: str) -> str:
-    return base64.urlsafe_b64encode(json.dumps([key, run_id]).encode()).decode()
+def cursor_before(run_id: str) -> str:
+    """Return the cursor of the runs that are older than one of this id, newest first."""
+    return _encode_cursor("newest", None, run_id)
 
 
-def _decode_cursor(cursor: str, kind: type) -> tuple[Any, str]:
+def _encode_cursor(sort: Sort, key: object, run_id: str) -> str:
+    return base64.urlsafe_b64encode(json.dumps([sort, key, run_id]).encode()).decode()
+
+
+_KEY_TYPES: Mapping[Sort, type] = {
+    "newest": NoneType,
+    "oldest": NoneType,
+    "name": str,
+    "distance": float,
+}
+
+
+def _decode_cursor(cursor: str, sort: Sort) -> tuple[Any, str]:
+    """Return the sort key and the id of the last run of the page before.
+
+    Raises:
+        InvalidInput: if the cursor is not one of a list in this order.
+    """
     try:
-        value, run_id = json.loads(base64.urlsafe_b64decode(cursor.encode("ascii")))
-        if not isinstance(value, kind) or not isinstance(run_id, str) or not run_id:
+        order, value, run_id = json.loads(base64.urlsafe_b64decode(cursor.encode("ascii")))
+        is_of_order = order == sort and isinstance(value, _KEY_TYPES[sort])
+        if not is_of_order or not isinstance(run_id, str) or not run_id:
             raise ValueError
         # No database takes NUL, or what is not UTF-8.
         if b"\0" in f"{value}{run_id}".encode():
             raise ValueError
     except (ValueError, TypeError, binascii.Error, RecursionError) as error:
         raise InvalidInput(
-            "cursor must be the next_cursor of the page before, of a list in the same order"
+            "cursor must be the next_cursor of the page before, of a list in the same order",
+            field="cursor",
         ) from error
     return value, run_id
