@@ -946,18 +946,18 @@ export interface DeletedRun {
   id: string;
 }
 /**
- * Ids of the runs that were deleted, and those that could not be.
+ * Ids of what was deleted, and the runs that could not be.
  */
 export interface DeletedView {
   deleted: string[];
   kept: KeptRun[];
   /**
-   * until when `POST /runs/{run_id}/restore` brings them all back; null where one is gone for good.
+   * until when `POST …/{id}/restore`, below the address of their list, brings them all back; null where one is gone for good.
    */
   restorable_until: string | null;
 }
 /**
- * A run that could not be deleted, and why.
+ * A run that could not be deleted, and why; of other things that is an error.
  */
 export interface KeptRun {
   id: string;

@@ -212,14 +212,6 @@ def test_a_run_is_restored_after_its_robot(store: RunStore) -> None:
     assert store.restore("a").id == "a"
 
 
-def test_a_run_whose_robot_is_gone_is_not_started(store: RunStore) -> None:
-    rex = add(store, body(), "Rex")
-    run = training("a", rex.robot)
-    store.robots.delete(rex.id)
-    with pytest.raises(NotFound, match="there is no robot"):
-        store.create(run)
-
-
 def test_files_without_a_row_are_deleted_at_the_start(tmp_path: Path) -> None:
     with stores.opened(tmp_path, None) as store:
         rex = add(store, body(), "Rex")
