@@ -4565,7 +4565,7 @@ export interface TaughtRobot {
    */
   run_id: string;
   /**
-   * how far it walks in 50 steps now that it has learned [m]; null before the reveal, but for a teacher.
+   * how far it walks in 50 steps now that it has learned [m]: in the race of both as soon as that is computed; null before the reveal, but for a teacher.
    */
   distance_m: number | null;
 }
