@@ -78,23 +78,28 @@ class Site:
 
 @contextmanager
 def site(
-    folder: Path, path: str, *, is_told: bool = True, is_stripped: bool = True
+    folder: Path,
+    path: str,
+    *,
+    is_told: bool = True,
+    is_stripped: bool = True,
+    is_forwarded: bool = False,
 ) -> Iterator[Site]:
     """Serve below a path.
 
     Args:
         folder: an empty folder.
         path: with slashes around it.
-        is_told: whether the server has the address as `HEXAPODS_PUBLIC_URL`; else the proxy
-            forwards the path.
+        is_told: whether the server has the address as `HEXAPODS_PUBLIC_URL`.
         is_stripped: whether the proxy removes the path from requests.
+        is_forwarded: whether the proxy sends the path in a header.
     """
     port = free_port()
     public_url = f"http://localhost:{port}{path}" if is_told else ""
     proxies = "127.0.0.1"
     data = folder / "data"
     with serving(data, token=TOKEN, public_url=public_url, trusted_proxies=proxies) as server:
-        location = Location(path, server.address, is_stripped, forwards_path=not is_told)
+        location = Location(path, server.address, is_stripped, forwards_path=is_forwarded)
         with proxied(folder / "proxy", port, [location]) as proxy:
             yield Site(server, proxy, path)
 
@@ -127,18 +132,14 @@ def test_every_page_stays_below_the_path(browser: Browser, tmp_path: Path) -> No
 def logs_in_and_races(operator: Dashboard, school: Site) -> None:
     """The link with the token leads to the page, in a session of the path alone; a race is held."""
     page = operator.page
-    operator.open(f"{school.address}?token={TOKEN}&{SHORT}")
+    assert path_of_session_that_races(operator, school) == "/hex/"
     assert page.url.startswith(f"{school.address}?")
     assert "token" not in page.url
     [cookie] = page.context.cookies(school.address)
-    assert (cookie["path"], cookie["sameSite"]) == ("/hex/", "Strict")
+    assert cookie["sameSite"] == "Strict"
     assert page.context.cookies(f"{school.origin}/") == []
-    operator.primary.click()
-    expect(operator.rows).to_have_count(2)
-    operator.eventually(lambda: operator.has_figures(2), "distances of both lanes")
     # Of the 3D view, which is a page of its own.
     assert any(frame.url.startswith(f"{school.address}viewer/") for frame in page.frames)
-    operator.eventually(lambda: "Race" in page.title() or operator.distances(), "a race")
 
 
 def opens_the_views(operator: Dashboard, school: Site) -> None:
@@ -229,7 +230,7 @@ def shows_a_tournament(operator: RoomPage, school: Site) -> None:
 @pytest.mark.parametrize(
     ("path", "how"),
     [
-        ("/user/ada@school/proxy/8000/", {"is_told": False}),
+        ("/user/ada@school/proxy/8000/", {"is_told": False, "is_forwarded": True}),
         ("/user/ada/proxy/absolute/8000/", {"is_stripped": False}),
     ],
 )
@@ -238,12 +239,7 @@ def test_a_notebook_server_proxies_it(
 ) -> None:
     """jupyter-server-proxy strips its path and forwards it, or passes it on as it is."""
     with site(tmp_path, path, **how) as hub, tab(flat_browser, hub) as operator:
-        operator.open(f"{hub.address}?token={TOKEN}&{SHORT}")
-        [cookie] = operator.page.context.cookies(hub.address)
-        assert cookie["path"] == path
-        operator.primary.click()
-        expect(operator.rows).to_have_count(2)
-        operator.eventually(lambda: operator.has_figures(2), "distances of both lanes")
+        assert path_of_session_that_races(operator, hub) == path
         with hub.api() as api:
             opened = api.post("rooms").raise_for_status().json()
         assert urlsplit(opened["address"]).path == f"{path}r/{in_groups(opened['code'])}"
@@ -251,3 +247,25 @@ def test_a_notebook_server_proxies_it(
             operator.page.goto(hub.address.rstrip("/"))
             expect(operator.page).to_have_url(hub.address)
         hub.check()
+
+
+def test_pages_work_below_a_path_of_which_the_server_knows_nothing(
+    flat_browser: Browser, tmp_path: Path
+) -> None:
+    with site(tmp_path, "/plain/", is_told=False) as plain, tab(flat_browser, plain) as operator:
+        assert path_of_session_that_races(operator, plain) == "/"
+        operator.page.goto(f"{plain.address}guide")
+        expect(operator.page).to_have_url(f"{plain.address}guide/page")
+        operator.page.goto(f"{plain.address}api/v1/trainings/")
+        expect(operator.page).to_have_url(f"{plain.address}api/v1/trainings")
+        plain.check()
+
+
+def path_of_session_that_races(operator: Dashboard, site: Site) -> str:
+    """Log in and hold a race; return the path of the session's cookie."""
+    operator.open(f"{site.address}?token={TOKEN}&{SHORT}")
+    [cookie] = operator.page.context.cookies(site.address)
+    operator.primary.click()
+    expect(operator.rows).to_have_count(2)
+    operator.eventually(lambda: operator.has_figures(2), "distances of both lanes")
+    return cookie["path"]
