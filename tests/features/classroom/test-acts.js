@@ -131,7 +131,7 @@ test("robots of the class are called by their pupils, those that are taught by t
   assert.equal(named(null), "");
   teaching.value = /** @type {any} */ ({ race_id: "both", taught: { run_id: "taught" } });
   assert.equal(named("both"), "Taught by you\nTaught by the reward");
-  assert.equal(named("taught"), "Your robot");
+  assert.equal(named("taught"), "Taught by you");
   room.value = /** @type {any} */ ({ shown: { teach: { rival: "simulated" } } });
   assert.equal(named("both"), "Taught by you\nTaught by a simulated person");
   resultsByCard.value = {};

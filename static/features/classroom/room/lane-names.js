@@ -1,5 +1,5 @@
 // What the robots in the picture are called where their agents' names tell nothing: pupils, and who taught.
-import { computed } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { scene } from "../../../js/store.js";
 import { results as resultsByCard, room } from "./room.js";
 import { teaching } from "./teaching.js";
@@ -25,8 +25,12 @@ const TEACHERS = { reward: "the reward", simulated: "a simulated person" };
 /** Who teaches the robot beside that of the class. @param {{ rival?: string } | null | undefined} teach */
 export const rivalTeacher = (teach) => TEACHERS[teach?.rival ?? "reward"];
 
+/** The name of the only robot in the frame beside that of the class; empty elsewhere. */
+export const nameBeside = signal("");
+
 /** The names by lane, as a text with a line for each; empty where the agents' names stay. */
 export const laneNames = computed(() => {
+  if (nameBeside.value) return nameBeside.value;
   const run_id = scene.value?.run_id ?? null;
   if (run_id === null) return "";
   // The race of the card before stays on the stage until something else is shown.
@@ -34,5 +38,5 @@ export const laneNames = computed(() => {
   if (raced) return racersOf(raced).map(({ name }) => name).join("\n");
   const now = teaching.value;
   if (run_id === now?.race_id) return `Taught by you\nTaught by ${rivalTeacher(room.value?.shown.teach)}`;
-  return run_id === now?.taught?.run_id ? "Your robot" : "";
+  return run_id === now?.taught?.run_id ? "Taught by you" : "";
 });

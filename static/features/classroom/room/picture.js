@@ -1,5 +1,5 @@
 // The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
-import { computed, effect, untracked } from "@preact/signals";
+import { computed, effect, signal, untracked } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { noteWatched } from "../api.js";
 import { html, Icon } from "../../../js/components/elements.js";
@@ -14,6 +14,7 @@ import {
 import { laneNames } from "./lane-names.js";
 import { arrived, code, isProjector, isTeaching, ownRunId, replayed, room, toReplay } from "./room.js";
 
+/** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "../../../js/replay-frames.js" */
 
 /** A practice is long, and its steps are much alike. */
@@ -52,7 +53,9 @@ function followOwnRun() {
 
 /** Size of the labels in the picture on a projector, against the type around it. */
 const LABEL_EM = 0.75;
-const emPx = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
+/** Size of the type around this page's frame, if it is in one [px]; null else. @type {Signal<number | null>} */
+export const typeAround = signal(null);
+const emPx = () => typeAround.peek() ?? parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 /** Colours of the lanes in the picture, as a text, which stays the same while the robots walk. */
 const colours = computed(() => (scene.value?.lanes ?? []).map(({ color }) => color).join(" "));
@@ -84,7 +87,7 @@ export function Picture({ isProjected = false }) {
     show();
     addEventListener("resize", show);
     return () => removeEventListener("resize", show);
-  }, [shownTheme.value, status, lanes, names, directions.value]);
+  }, [shownTheme.value, status, lanes, names, directions.value, typeAround.value]);
   return html`
     <div class="room-picture" data-status=${status}>
       <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>

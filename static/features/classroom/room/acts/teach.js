@@ -79,11 +79,12 @@ function RivalRobot({ run_id, by }) {
     if (run_id === null) return undefined;
     const tell = () => frame.current?.contentWindow?.postMessage({
       type: MESSAGE, run_id, time_s: position.peek(), rate: playhead.peek()?.rate || 1,
-      isPlaying: playback.peek()?.playing ?? false,
+      isPlaying: playback.peek()?.playing ?? false, name: `Taught by ${by}`,
+      typePx: parseFloat(getComputedStyle(document.documentElement).fontSize),
     }, globalThis.origin);
     const timer = setInterval(tell, TELL_MS);
     return () => clearInterval(timer);
-  }, [run_id]);
+  }, [run_id, by]);
   return html`
     <section class="rival-robot" aria-label="The other robot">
       <iframe ref=${frame} src=${address} title=${`The robot that ${by} teaches, in 3D`} tabindex="-1"></iframe>
