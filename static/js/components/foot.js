@@ -1,22 +1,20 @@
 // The foot of the panel: the primary button, the running work, what failed, and what a spectator can do.
 import {
-  canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume, resumeRun,
-  runPrimaryAction, secondaryActions, showOnStage, stop,
+  canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume,
+  runPrimaryAction, secondaryActions, stop,
 } from "../actions.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
-import { percentage, sentence, whole } from "../format.js";
+import { percentage, sentence } from "../format.js";
 import { ignored, page } from "../page-state.js";
 import { isFootOpen, isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
-import { isGuest, isOperator, mayChange, mayStart } from "../selectors.js";
+import { isGuest, isOperator, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
 import { isAway, scene } from "../store.js";
-import { inFormWords, labelOf, messageOf } from "../titles.js";
+import { labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import { goToField, html, Icon, ProgressBar, UnknownParts } from "./elements.js";
 import { Loaded, Slot } from "../features.js";
-
-/** @import { Run } from "../types.js" */
 
 export const Foot = () => (mayStart.value ? html`<${Actions} />` : html`<${Spectator} />`);
 
@@ -28,9 +26,7 @@ function Actions() {
   const isChanged = page.form.value.size > 0;
   return html`
     <div class="actions" role="group" aria-label="Actions">
-      <${Interrupted} />
-      <${Failure} />
-      <${OffStage} />
+      ${hasNotices() && html`<${Loaded} name="notices" load=${loadNotices} isQuiet />`}
       <${Problem} at="start" />
       <${Problem} at="work" />
       <${Problem} at="tune" />
@@ -189,54 +185,10 @@ function Progress() {
   `;
 }
 
-function OffStage() {
-  const run = offStage.value;
-  if (!run) return null;
-  return html`
-    <div class="notice">
-      <p>The stage shows another run; your ${run.kind} goes on without a picture.</p>
-      <button class="secondary" onClick=${() => showOnStage(run)}>Show on the stage</button>
-      <${Problem} at=${run.id} />
-    </div>
-  `;
-}
+const loadNotices = () => import("./run-notices.js").then(({ RunNotices }) => RunNotices);
 
-/** @param {{ run: Run }} props */
-const ResumeButton = ({ run }) => html`
-  <button class="secondary" disabled=${pending.value[run.id] || isAway.value} onClick=${() => resumeRun(run)}>
-    Go on
-  </button>
-  <${Problem} at=${run.id} />
-`;
-
-function Failure() {
-  const run = shownRun.value;
-  if (run?.state !== "failed" || !mayChange(run)) return null;
-  return html`
-    <div class="notice bad">
-      <p><b>The ${run.kind} failed.</b> ${inFormWords(run.error ?? "")}</p>
-      <p>
-        Change what it names${isOperator.value && ", or let it go on from its last checkpoint"}. Other runs are not
-        affected.
-      </p>
-      ${isOperator.value && run.can_resume && html`<${ResumeButton} run=${run} />`}
-    </div>
-  `;
-}
-
-/** Of the newest run, while another one is on stage: the stage offers to resume its own. */
-function Interrupted() {
-  const run = interruptedRun.value;
-  if (!run) return null;
-  const { done, total } = run.progress;
-  const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
-  return html`
-    <div class="notice">
-      <p><b>${sentence(run.kind)} “${run.name}” was interrupted${where}; it is not on the stage.</b> ${run.error}</p>
-      <${ResumeButton} run=${run} />
-    </div>
-  `;
-}
+/** Whether something of a run is to be told: it was interrupted or failed, or is not on the stage. */
+const hasNotices = () => interruptedRun.value !== null || Boolean(offStage.value) || shownRun.value?.state === "failed";
 
 // ---- spectators: what is shown, and what they can do on their own page
 

@@ -1,7 +1,6 @@
 // The 3D stage in its frame, with labels over it.
 import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { inMillimetres, tenths } from "../format.js";
 import { narrative } from "../headline.js";
@@ -11,14 +10,12 @@ import {
 } from "../page.js";
 import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, isOwn, plan, playback, replayProblem } from "../player.js";
-import { isDecided, isStale } from "../on-stage.js";
-import { isOperator } from "../selectors.js";
+import { isDecided } from "../on-stage.js";
 import { agentOf } from "../settings.js";
-import { isAway, runs, scene } from "../store.js";
+import { isAway, scene } from "../store.js";
 import { isAtLeast } from "../workspace.js";
-import { html, Icon } from "./elements.js";
+import { html } from "./elements.js";
 import { Loaded, Slot } from "../features.js";
-import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */
 
@@ -166,66 +163,15 @@ const ReplayProblem = () => replayProblem.value && html`
 
 // ---- notes over the picture: what ended and how to go on, and what comes next
 
+const loadNotes = () => import("./stage-notes.js").then(({ StageNotes }) => StageNotes);
+
+const hasNotes = () => Boolean(narrative.value.note || playback.value?.announced || isDecided.value);
+
 const StageNotes = () => html`
   <div class="stage-notes" role="group" aria-label="Notes on the shown run">
-    <${EarlyEndNote} />
-    <${DecidedNote} />
-    <${AnnouncementNote} />
+    ${hasNotes() && html`<${Loaded} name="notes" load=${loadNotes} isQuiet />`}
   </div>
 `;
-
-/** Of a run on stage that ended early: where, and how to go on. */
-function EarlyEndNote() {
-  const { note } = narrative.value;
-  if (!note) return null;
-  const { what, words, action } = note;
-  // What a person has stopped is not what is to be pressed next; what a crash has ended is.
-  const style = action?.run.state === "stopped" ? "secondary" : "primary";
-  return html`
-    <div class="stage-note" role="status">
-      <p><b>${what}</b> ${words}</p>
-      ${action && html`
-        <button class=${`${style} compact`} disabled=${pending.value[action.run.id]}
-          onClick=${() => resumeRun(action.run)}>
-          <${Icon} name="play" />${action.label}
-        </button>
-        <${Problem} at=${action.run.id} />
-      `}
-    </div>
-  `;
-}
-
-/** At the photo finish, while other lanes still walk. */
-const DecidedNote = () => isDecided.value && !isStale.value && isAtLeast("try") && isOperator.value &&
-  !isOwn.value && playback.value?.end_at_time_out && html`
-    <button class="secondary compact" onClick=${keepWatching} title="Some robots still walk">Keep watching</button>
-  `;
-
-/** The race that the stage shows again by itself. */
-function AnnouncementNote() {
-  const announced = isAway.value ? null : playback.value?.announced ?? null;
-  const [left, setLeft] = useState(0);
-  useEffect(() => {
-    if (!announced) return undefined;
-    const end = performance.now() + 1000 * announced.in_s;
-    const count = () => setLeft(Math.max(0, Math.ceil((end - performance.now()) / 1000)));
-    count();
-    const timer = setInterval(count, 250);
-    return () => clearInterval(timer);
-  }, [announced]);
-  if (!announced) return null;
-  const name = runs.value.get(announced.run_id)?.name ?? "a race";
-  const what = announced.run_id === playback.value?.run_id ? "the same again" : `${name}, again`;
-  return html`
-    <div class="stage-note">
-      <p role="status">Next: ${what}</p>
-      <p class="dim num" aria-hidden="true">in ${left} s</p>
-      ${isOperator.value && isAtLeast("try") && html`
-        <button class="secondary compact" onClick=${stay}>Stay</button>
-      `}
-    </div>
-  `;
-}
 
 // ---- a drawing of the robots on the start line, shown until the stage has a picture
 

@@ -1,15 +1,14 @@
 // The time bar below the stage: play, the moment in the picture, how far the run is computed, what happened, and how it
 // is shown. It is shared by every page, unless this one plays a replay of its own.
-import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
+import { skipToEnd } from "../actions.js";
+import { Loaded } from "../features.js";
 import { whole } from "../format.js";
 import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
-import { page } from "../page-state.js";
 import { isPhone, isProjected } from "../page.js";
 import { closeReplay, isOwn, openReplay, playback, position, replayProblem, stepReplay } from "../player.js";
 import { percent, shareOf, ticks } from "../scale.js";
-import { isOperator } from "../selectors.js";
-import { isAway, scene } from "../store.js";
+import { scene } from "../store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, toggleTime,
 } from "../time.js";
@@ -19,9 +18,7 @@ import { Problem } from "./foot.js";
 import { widthOf } from "./line-labels.js";
 
 /** @import { Mark, Scale } from "../time.js" */
-/** @import { Changed, Scene } from "../types.js" */
-
-const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
+/** @import { Scene } from "../types.js" */
 
 export function TimeBar() {
   const shownScale = scale.value;
@@ -35,7 +32,9 @@ export function TimeBar() {
           <${Icon} name="skip" />
         </button>
       `}
-      ${shownScale && isAtLeast("try") && !isPhone.value && canPlay.value && html`<${EndAtTimeOut} /><${Speed} />`}
+      ${shownScale && isAtLeast("try") && !isPhone.value && canPlay.value && html`
+        <${Loaded} name="speeds" load=${loadChoices} isQuiet />
+      `}
       ${isOwn.value ? html`<${BackToStage} />` : shownScale && html`<${ReplayButton} />`}
       <${Problem} at="stage" />
     </div>
@@ -226,33 +225,4 @@ const isOneLaneLeft = (now) =>
   now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
   now.lanes.filter(({ done, halted }) => !done && !halted).length === 1;
 
-/** Whether the show of a race ends with its photo finish: its last robots may walk on for a minute. */
-function EndAtTimeOut() {
-  if (scene.value?.kind !== "race" || scene.value.lanes.length < 2) return null;
-  const isOn = playback.value?.end_at_time_out ?? true;
-  const toggle = () => (isOwn.value ? (page.end.value = isOn ? "all" : "time-out") : endAtTimeOut(!isOn));
-  return html`
-    <label class="switch" title="End with the photo finish, which settles the ranking">
-      <input type="checkbox" role="switch" name="end_at_time_out" checked=${isOn}
-        disabled=${isStale.value} onChange=${toggle} />
-      End at time-out
-    </label>
-  `;
-}
-
-function Speed() {
-  const speed = playback.value?.speed ?? 1;
-  const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
-  const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
-  const choices = [...(isOwn.value ? [] : [["time-lapse", "Auto"]]), ...numbers.map((n) => [n, `×${n}`])];
-  /** @param {Changed} event */
-  const onChange = ({ target: { value } }) => setStage({ speed: value === "time-lapse" ? value : Number(value) });
-  return html`
-    <select name="speed" aria-label="Speed" title=${isOwn.value ? "Speed of your replay" : "Speed of the stage"}
-      disabled=${!isOwn.value && (!isOperator.value || isAway.value)} onChange=${onChange}>
-      ${choices.map(([choice, words]) => html`
-        <option value=${String(choice)} selected=${String(choice) === String(speed)}>${words}</option>
-      `)}
-    </select>
-  `;
-}
+const loadChoices = () => import("./time-choices.js").then(({ TimeChoices }) => TimeChoices);
