@@ -14,7 +14,7 @@ from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbance_documents import as_text, disturbance_from, parse_disturbance
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import GaitSpec, read_gait
+from hexapods.domain.gait import DEFAULT_GAIT, GaitSpec, read_gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import check_kept
@@ -30,8 +30,6 @@ from hexapods.runs.config import SimulatorName, WalkingProblem
 from hexapods.runs.recommendation import recommend
 
 C = TypeVar("C", bound=WalkingProblem)
-GAIT = "left-right-origin"
-"""The gait where none is given: the first of the paper's."""
 GaitLike = str | Mapping[str, Any] | GaitSpec
 """A gait: its name, itself, or a mapping with `right_leg`, `left_leg`, and `symmetry`, `pairs` or
 `groups`."""
@@ -134,7 +132,7 @@ def read_walk(values: Mapping[str, Any], like: WalkingProblem | None = None) -> 
     Raises:
         UnknownName, InvalidInput: if a value is not valid.
     """
-    walk: dict[str, Any] = {"gait": GAIT}
+    walk: dict[str, Any] = {"gait": DEFAULT_GAIT}
     if like is not None:
         inherited = [name for name in WALK if name not in ("world", "tolerance")]
         walk = {name: getattr(like, name) for name in inherited}

@@ -99,7 +99,7 @@ class PracticeBody(Body):
 
 
 class TrainingBody(PracticeBody, WalkBody):
-    """A training. All fields but the gait default to the paper's values."""
+    """A training. All fields default to the paper's values."""
 
     agent: str = TrainingConfig.agent
 

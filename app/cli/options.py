@@ -13,7 +13,7 @@ from app.cli.robot_names import stored_robot
 from hexapods.domain.disturbance_documents import parse_disturbance
 from hexapods.domain.disturbances import KINDS
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import DEFAULT_GAIT, NAMED_GAITS, GaitSpec
 from hexapods.domain.gait import read_gait as gait_of_legs
 from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.world import WORLDS, world_from
@@ -45,13 +45,15 @@ Workers = Annotated[
     WholeNumber | None, Parameter(help="worker processes on this machine (default: one per core)")
 ]
 WALKING_PROBLEM = Group("Walking problem", sort_key=(1, 0))
+_GAIT_NAMES = ", ".join(NAMED_GAITS).replace(DEFAULT_GAIT, f"{DEFAULT_GAIT} (default)", 1)
 Gait = Annotated[
     str,
     Parameter(
         metavar="NAME",
         group=WALKING_PROBLEM,
         completer=lambda _: [*NAMED_GAITS],
-        help=f"{', '.join(NAMED_GAITS)}, or JSON with `groups`, `pairs`, or `right_leg`, "
+        show_default=False,
+        help=f"{_GAIT_NAMES}, or JSON with `groups`, `pairs`, or `right_leg`, "
         "`left_leg` and `symmetry`: '{\"groups\": [[1, 3, 5], [2, 4, 6]]}'",
     ),
 ]

@@ -13,6 +13,7 @@ from app.cli.terminal import progress, show_lanes
 from hexapods import races
 from hexapods.agents.registry import keeps_learning, needs_practice
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.gait import DEFAULT_GAIT
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import to_json
 from hexapods.domain.settings import declared_fields
@@ -32,7 +33,7 @@ _WALK = WalkOptions()
 
 def race(
     *,
-    gait: Gait,
+    gait: Gait = DEFAULT_GAIT,
     walk: WalkOptions = _WALK,
     observation: Observation = "measured",
     lane: Annotated[

@@ -18,6 +18,7 @@ from app.cli.setting_options import AgentOptions, DeclaredOptions, flag
 from app.cli.terminal import progress
 from hexapods import practice
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import DEFAULT_GAIT
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import to_json
 from hexapods.domain.settings import declared_fields
@@ -38,7 +39,7 @@ _WALK = WalkOptions()
 
 def train(
     *,
-    gait: Gait | None = None,
+    gait: Gait = DEFAULT_GAIT,
     walk: WalkOptions = _WALK,
     observation: Annotated[Observation, Parameter(group=_PRACTICE)] = TrainingConfig.observation,
     agent: Annotated[
@@ -80,15 +81,13 @@ def train(
         options = {"gait": gait, "observation": observation, "agent": agent, "from": table}
         _check_nothing_else({**asdict(walk), **options}, settings)
         out = out or checkpoint
-    elif gait is None:
-        raise InvalidInput("give --gait, or --resume with the checkpoint of a training")
     if out:
         check_writable(out)
     try:
         if checkpoint:
             training = _resume(checkpoint)
         else:
-            problem = {"gait": read_gait(gait or ""), **walk.fields(), "observation": observation}
+            problem = {"gait": read_gait(gait), **walk.fields(), "observation": observation}
             training = _train(agent, {**problem, **settings}, table, out)
     except Interrupted as interrupted:
         _say_how_to_go_on(interrupted, out, as_json)
@@ -149,6 +148,7 @@ def _check_nothing_else(options: Mapping[str, Any], settings: Mapping[str, Any])
     """
     defaults = {
         **asdict(_WALK),
+        "gait": DEFAULT_GAIT,
         "observation": TrainingConfig.observation,
         "agent": TrainingConfig.agent,
     }

@@ -169,6 +169,8 @@ def gait_as_json(value: str | GaitSpec) -> str | dict[str, Any]:
     return {name: legs for name, legs in asdict(value).items() if legs is not None}
 
 
+DEFAULT_GAIT = "left-right-origin"
+"""The gait of a walk that names none, in every interface: the first of the paper's."""
 _NAME: Schema = {"type": "string", "enum": list(NAMED_GAITS)}
 _LEG: Schema = {"type": "integer", "minimum": 1, "maximum": MAX_LEGS}
 _PAIR: Schema = {"type": "array", "prefixItems": [_LEG, _LEG], "minItems": 2, "maxItems": 2}

@@ -15,7 +15,7 @@ from hexapods.agents import registry
 from hexapods.agents.protocol import Problem
 from hexapods.domain import disturbances
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import AnyGait, Gait, resolve
+from hexapods.domain.gait import DEFAULT_GAIT, AnyGait, Gait, resolve
 from hexapods.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
 from hexapods.domain.observation import Observation, check_observation
 from hexapods.domain.records import Record
@@ -162,7 +162,7 @@ class WalkingProblem(Record):
 
     json_names: ClassVar[Mapping[str, str]] = MappingProxyType({"world": "disturbances"})
 
-    gait: AnyGait
+    gait: AnyGait = DEFAULT_GAIT
     robot: AnyRobot = field(default_factory=Robot)
     simulator: SimulatorName = "mujoco"
     divisions: Divisions = FootGrid.divisions

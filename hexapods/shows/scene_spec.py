@@ -37,7 +37,7 @@ def training_scene(config: TrainingConfig) -> SceneSpec:
 def idle_scene() -> SceneSpec:
     """Return the scene of the idle stage: the paper's three agents."""
     lanes = tuple(LaneConfig(agent=agent) for agent in PAPERS_LANES)
-    config = RaceConfig(gait="left-right-origin", lanes=lanes)
+    config = RaceConfig(lanes=lanes)
     return SceneSpec("idle", config.robot, config.resolved_gait, config.grid, _lane_specs(lanes))
 
 

@@ -61,7 +61,7 @@ def test_a_setting_of_another_agent_is_refused_with_those_of_this_one(tmp_path: 
         (("train", "--grid_side_m", "x"), "Invalid value for --grid_side_m: must be a number from"),
         (("train", "--grid-side-m"), "hexapods train: --grid-side-m needs a value: Side of"),
         (("train", "more"), "hexapods train: there is no argument 'more'"),
-        (("race",), "hexapods race: --gait needs a value: left-right-origin, "),
+        (("race",), "hexapods race: --lane needs a value: agent of a lane, "),
         (("experiment",), "hexapods experiment: EXPERIMENT needs a value: table1, figure4, "),
         (("serve", "--port", "65536"), "serve: --port must be from 0 to 65535, not 65536"),
         (("serve", "--port", "web"), "--port: must be a whole number, not 'web'"),

@@ -17,6 +17,7 @@ from app.storage.database.store import RunStore
 from hexapods.agents.registry import find, learns
 from hexapods.domain.disturbance_documents import as_mapping, parse_disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.gait import DEFAULT_GAIT
 from hexapods.domain.records import refusal_in
 from hexapods.runs.config import TrainingConfig, agent_settings
 from hexapods.runs.lane import LANE_FIELDS
@@ -26,7 +27,6 @@ _WALK = ("gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", 
 _PRACTICE = ("steps", "observation", "steps_per_episode", "evaluate_every")
 _LEFT_OUT = ("seed", "name", "pace")
 """Fields of a page's form that are ignored: the room sets seed, name and the highest pace."""
-_GAIT = "left-right-origin"
 
 
 class CardStarts:
@@ -161,7 +161,7 @@ class _Fields:
             raise UnknownName("agent", agent, agents)
         self.agent, self._lanes = agent, flat.pop("lanes", None)
         settings_of_agent, known_settings = agent_settings(agent), declared(form)
-        self._walk: dict[str, Any] = {"gait": _GAIT}
+        self._walk: dict[str, Any] = {"gait": DEFAULT_GAIT}
         self._practice: dict[str, Any] = {}
         self._settings = {
             name: _value(value, settings_of_agent.get(name)) for name, value in settings.items()

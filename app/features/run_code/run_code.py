@@ -32,7 +32,7 @@ MAX_CONTINUED = 100
 downloaded."""
 _ALWAYS = ("gait", "steps", "seed", "seeds")
 """Arguments that are spelt out whatever their value."""
-_DEFAULTS = to_json(TrainingConfig(gait="left-right-origin"))
+_DEFAULTS = to_json(TrainingConfig())
 _INHERITED = ("robot", "simulator", "divisions", "grid_side_m", "reward", "observation")
 """Arguments whose default in Python is that of the training that goes on, or races."""
 
