@@ -101,6 +101,17 @@ proxy: $(DEV_STAMP)
 pythons: $(DEV_STAMP) ## Compare results to the last bit in every other Python that is here
 	$(BIN)/python -m tests.other_pythons
 
+# In no tier: it takes minutes, and bounds change seldom.
+.PHONY: oldest
+oldest: $(DEV_STAMP) ## Run the library's and the API's tests with the oldest versions allowed
+	$(BIN)/python -m tests.oldest_versions
+
+# In no tier, too: the types of what exists on other systems.
+.PHONY: types-elsewhere
+types-elsewhere: $(DEV_STAMP) ## Check the types as on Windows and macOS
+	$(BIN)/mypy --platform win32 --no-warn-unreachable --cache-dir build/mypy-win32 app hexapods
+	$(BIN)/mypy --platform darwin --no-warn-unreachable --cache-dir build/mypy-darwin app hexapods
+
 # In no tier: it downloads half a gigabyte.
 .PHONY: readers
 readers: $(DEV_STAMP) ## Open exported robots in MuJoCo 3.2, dm_control, yourdfpy and WebAssembly
