@@ -26,7 +26,7 @@ Serve = Callable[..., Api]
 def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
     api = serve(starts_per_minute=3)
     for _ in range(3):
-        refused(api.call("POST", "/trainings", json={}), 422)
+        refused(api.call("POST", "/trainings", json={"steps": 0}), 422)
     for path in ("/trainings", "/races", "/trainings/import", "/trainings/x/resume"):
         answer = api.call("POST", path, json={})
         refused(answer, 429, "3 times a minute", "HEXAPODS_STARTS_PER_MINUTE")
@@ -45,7 +45,7 @@ _START = (
 
 def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
     api = serve(starts_per_minute=1)
-    refused(api.call("POST", "/trainings", json={}), 422)
+    refused(api.call("POST", "/trainings", json={"steps": 0}), 422)
     starts, limited = set(), set()
     for path, methods in api.client.get("/openapi.json").json()["paths"].items():
         if "post" not in methods:
@@ -67,7 +67,7 @@ def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
     refused(api.call("GET", "/runs/x/page"), 404)
     refused(api.call("GET", "/runs/x/page"), 429)
     bearer = {"Authorization": f"Bearer {TOKEN}"}
-    refused(api.call("POST", "/trainings", json={}, headers=bearer), 422)
+    refused(api.call("POST", "/trainings", json={"steps": 0}, headers=bearer), 422)
 
 
 def test_wrong_tokens_are_rate_limited(serve: Serve) -> None:
