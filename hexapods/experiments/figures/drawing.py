@@ -1,6 +1,7 @@
 """Draws a figure for a paper by Matplotlib. The same content gives the same bytes."""
 
 import io
+import logging
 import textwrap
 import threading
 from collections.abc import Mapping, Sequence
@@ -53,6 +54,8 @@ _MARKERS = 5
 """Markers on a profile, besides its dashes."""
 _LOCK = threading.Lock()
 """Settings of Matplotlib are global."""
+logging.getLogger("fontTools").setLevel(logging.WARNING)
+"""For each PDF, Matplotlib has it embed fonts, and it tells each table of them as information."""
 
 
 def draw(content: FigureContent) -> dict[str, bytes]:

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import logging
 import re
 import sys
 import zipfile
@@ -66,6 +67,14 @@ def test_text_is_text_in_an_embedded_font(compared: PaperFigure) -> None:
     svg = compared.pictures["svg"].decode()
     for text in ("Distance in 50 steps (m)", "Difference (m)", "Q-learning, α 0.3 (n = 12)"):
         assert f">{text}</text>" in svg
+
+
+def test_a_figure_leaves_no_lines_in_the_log(
+    summary: Mapping[str, Any], caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level(logging.INFO):
+        paper_figure(summary, FigureConfig(kind="seeds", columns=1))
+    assert [record.name for record in caplog.records if record.name.startswith("fontTools")] == []
 
 
 def test_text_is_at_least_seven_points(compared: PaperFigure) -> None:
