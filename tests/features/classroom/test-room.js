@@ -7,10 +7,18 @@ import {
 import { chosenSettings, givenInWords } from "../../../static/features/classroom/room/allowed-settings.js";
 import { answerInWords, draftOf, KINDS, scoreInWords } from "../../../static/features/classroom/room/questions.js";
 import { axisOf } from "../../../static/features/classroom/room/scores.js";
+import { withPresses } from "../../../static/features/classroom/room/teaching.js";
 import { options } from "../../../static/js/store.js";
 import { OPTIONS } from "../../page/options.js";
 
 /** @import { Ask, LessonCard, ResultEntry } from "../../../static/js/types.js" */
+
+test("a step that both an event and an answer have counts once", () => {
+  /** @param {number} step */
+  const praised = (step) => ({ step, plus: 1, minus: 0, value: 1 });
+  const both = withPresses([praised(0), praised(2)], [praised(2), praised(3), praised(1)]);
+  assert.deepEqual(both.map(({ step }) => step), [0, 1, 2, 3]);
+});
 
 beforeEach(() => (options.value = OPTIONS));
 

@@ -25,12 +25,25 @@ const racedToEnd = signal(null);
 /** Whether the picture has been where it can be told how far both walk. */
 export const isTold = computed(() => racedToEnd.value !== null && racedToEnd.value === teaching.value?.race_id);
 
+/**
+ * Presses with those that are missing among them, by step: an event and an answer can have the same step.
+ * @param {StepPresses[]} presses
+ * @param {StepPresses[]} others
+ */
+export function withPresses(presses, others) {
+  const steps = new Set(presses.map(({ step }) => step));
+  return [...presses, ...others.filter(({ step }) => !steps.has(step))].sort((a, b) => a.step - b.step);
+}
+
 export async function refreshTeaching() {
   if (!isTeaching.peek()) return;
   try {
     const answer = await api.getTeaching(code);
-    if (answer.taught?.run_id !== teaching.peek()?.taught?.run_id) ownPresses.value = {};
-    teaching.value = answer;
+    const shown = teaching.peek();
+    const isSameRobot = answer.taught?.run_id === shown?.taught?.run_id;
+    if (!isSameRobot) ownPresses.value = {};
+    // An event may have come while the answer was on its way.
+    teaching.value = isSameRobot ? { ...answer, presses: withPresses(answer.presses, shown?.presses ?? []) } : answer;
   } catch {
     // The next event asks again.
   }
@@ -47,9 +60,9 @@ effect(() => {
   const event = newestTeaching.value;
   if (event === null) return;
   untracked(() => {
-    const known = teaching.peek();
-    if (known === null || event.card !== known.card || event.presses.length === 0) refreshTeaching();
-    else teaching.value = { ...known, presses: [...known.presses, ...event.presses] };
+    const shown = teaching.peek();
+    if (shown === null || event.card !== shown.card || event.presses.length === 0) refreshTeaching();
+    else teaching.value = { ...shown, presses: withPresses(shown.presses, event.presses) };
   });
 });
 effect(() => {
