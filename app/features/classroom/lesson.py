@@ -29,7 +29,7 @@ from app.features.classroom.questions import (
     check_question,
     check_right,
 )
-from app.features.classroom.teach import Teach
+from app.features.classroom.teach import Teach, check_steps
 from app.storage.json_text import is_finite
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import Record
@@ -277,6 +277,8 @@ def _check_card(card: Card, where: str) -> None:
             raise InvalidInput(f"{where}.may.{name[:MAX_SETTING_NAME]}: {error}") from error
     if card.teach is not None and card.go is not None:
         raise InvalidInput(f"{where}.teach: a card either runs something or teaches; leave out go")
+    if card.teach is not None:
+        check_steps(card.teach, f"{where}.teach")
     if card.ask is not None and card.revealed.answer is not None:
         check_right(card.ask, card.revealed.answer, f"{where}.reveal")
 

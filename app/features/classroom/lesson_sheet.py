@@ -5,6 +5,7 @@ from html import escape
 from app.features.classroom.lesson import Card, Lesson, html_of
 from app.features.classroom.markdown import as_html
 from app.features.classroom.questions import Ask
+from app.features.classroom.teach import Teach
 from hexapods.agents.appearance import title_of
 from hexapods.agents.registry import registered
 
@@ -12,6 +13,10 @@ _RUNS = {
     "training": "Their robots practise.",
     "race": "Their robots practise, then race.",
     "what-if": "Each tries settings on thirty robots.",
+}
+_RIVALS = {
+    "reward": "that learned from the reward",
+    "simulated": "that a simulated person taught",
 }
 _STYLE = """
 @page { size: A4; margin: 9mm 11mm; }
@@ -66,9 +71,10 @@ def _card(number: int, card: Card) -> str:
     answer = card.revealed.answer
     reveal = texts.reveal
     if answer is not None:
-        reveal = f"<p>Right: <b>{escape(_named(answer))}</b></p>{reveal}"
+        reveal = _right(answer) + reveal
     opened = ", ".join(card.may)
     does = [] if card.go is None else [_RUNS[card.go]]
+    does += [] if card.teach is None else [_taught(card.teach)]
     does += [f"They may change: {opened}."] if opened else []
     return (
         f'<section class="card"><h2>{number}.{title}</h2>{texts.text}'
@@ -79,10 +85,21 @@ def _card(number: int, card: Card) -> str:
     )
 
 
+def _taught(teach: Teach) -> str:
+    """Return in sentences what a class does on a card on which it teaches."""
+    return (
+        f"Together they teach a robot by + and − for {teach.seconds:g} s ({teach.steps:,} steps); "
+        f"you start it. At the reveal it races one {_RIVALS[teach.rival]}."
+    )
+
+
 def _knowledge(title: str, ask: Ask, right: float | str | None) -> str:
-    told = "" if right is None else f"<p>Right: <b>{escape(_named(right))}</b></p>"
-    reveal = f'<div class="reveals">{told}</div>' if told else ""
+    reveal = "" if right is None else f'<div class="reveals">{_right(right)}</div>'
     return f'<section class="card"><h2>{escape(title)}</h2>{_asked(ask)}{reveal}</section>'
+
+
+def _right(answer: float | str) -> str:
+    return f"<p>Right: <b>{escape(_named(answer))}</b></p>"
 
 
 def _asked(ask: Ask) -> str:

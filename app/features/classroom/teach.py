@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
 
+from app.jobs.jobs import MAX_CHANGES
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import Record
 
 Seconds = Annotated[float, Ge(20), Le(900)]
@@ -31,3 +33,21 @@ class Teach(Record):
     def steps(self) -> int:
         """Number of steps of the robot while the class teaches."""
         return max(1, round(self.seconds / self.step_s))
+
+
+def check_steps(teach: Teach, where: str) -> None:
+    """Check that presses for each step of the robot can be sent to its training.
+
+    Args:
+        teach: the part of a card.
+        where: its place in the lesson, for messages.
+
+    Raises:
+        InvalidInput: if the robot takes more steps than a run takes changes.
+    """
+    if teach.steps > MAX_CHANGES:
+        raise InvalidInput(
+            f"{where}: {teach.seconds:g} seconds with step_s {teach.step_s:g} are {teach.steps:,} "
+            f"steps of the robot; valid are at most {MAX_CHANGES:,}, as many as a run takes "
+            f"changes: at most {MAX_CHANGES * teach.step_s:g} seconds with this step_s"
+        )

@@ -1,8 +1,9 @@
 """Routes of cards on which a class teaches a robot by presses of + and −."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 from app.answer import Answer, Count
 from app.api.contract import answers
@@ -27,12 +28,20 @@ VALID.update(
 router = api_router(prefix="/rooms", tags=["rooms"])
 
 
+def _sign(value: Any) -> int:
+    """Return a press; of `Literal[1, -1]` alone true and 1.0 would be 1, too."""
+    if type(value) is not int or value not in (1, -1):
+        context = {"name": "value", "valid": "the integer 1 or -1"}
+        raise PydanticCustomError("setting", "must be {valid}", context)
+    return value
+
+
 class PressBody(Body):
     """A press of + (1) or − (-1): for which robot, and at which moment of its picture."""
 
     run_id: Annotated[str, Field(max_length=64)]
     at_s: Annotated[float, number(ge=0, le=MAX_RUN_S)]
-    value: Literal[1, -1]
+    value: Annotated[Literal[1, -1], BeforeValidator(_sign)]
 
 
 class PressView(Answer):

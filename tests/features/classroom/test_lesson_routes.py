@@ -8,6 +8,7 @@ import pytest
 from app.features.classroom import lessons
 from app.features.classroom.lesson import MAX_CARDS, html_of, read_lesson
 from app.features.classroom.lesson_file import MAX_BYTES, read_file, write_file
+from app.features.classroom.lesson_sheet import sheet_of
 from app.features.classroom.lessons import built_in
 from app.features.classroom.tables import LESSONS
 from tests.api.calls import Api, refused
@@ -89,6 +90,13 @@ def test_a_lesson_that_was_deleted_comes_back_for_an_hour(
     assert deletions.purge() >= 1
     refused(api.call("POST", f"{path}/restore"), 404, "can be restored for 1 h")
     refused(api.call("POST", f"/lessons/{next(iter(built_in()))}/restore"), 404, "no stored lesson")
+
+
+def test_the_sheet_of_a_card_that_teaches_says_what_the_class_does() -> None:
+    card = {"text": "Press.", "teach": {"seconds": 60, "step_s": 1, "rival": "simulated"}}
+    sheet = sheet_of(read_lesson({"title": "Teach", "cards": [card]}))
+    assert "by + and − for 60 s (60 steps)" in sheet
+    assert "races one that a simulated person taught" in sheet
 
 
 def test_the_most_lessons_are_counted_with_those_that_were_deleted(

@@ -10,6 +10,7 @@ from starlette.testclient import TestClient
 
 from app.features.classroom.lesson import read_lesson
 from app.features.classroom.rooms import Rooms
+from app.jobs.jobs import MAX_CHANGES
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -98,9 +99,12 @@ def test_presses_that_nobody_can_have_meant_are_refused(school: Class) -> None:
         {"run_id": run_id, "at_s": -1, "value": 1},
         {"run_id": run_id, "at_s": 1, "value": 0},
         {"run_id": run_id, "at_s": 1, "value": 10},
+        {"run_id": run_id, "at_s": 1, "value": 1.0},
+        {"run_id": run_id, "at_s": 1, "value": "1"},
         {"run_id": run_id, "value": 1},
     ):
         refused(pupil.call("POST", f"/rooms/{code}/presses", json=body), 422)
+    refused(pressed(pupil, code, run_id, 0.0, True), 422, "integer 1 or -1")
     answers = [pressed(pupil, code, run_id, 500.0) for _ in range(12)]
     refused(answers[-1], 429, "press faster")
     # Others of the class press as before.
@@ -231,6 +235,11 @@ def test_a_card_that_teaches_can_be_started_when_it_is_stored(school: Class) -> 
         read_lesson(lesson(go="training"))
     with pytest.raises(InvalidInput, match="teach"):
         read_lesson(lesson(teach={"seconds": 5}))
+    with pytest.raises(InvalidInput, match=r"cards.0.teach: .* 2,250 steps .* at most 800 seconds"):
+        read_lesson(lesson(teach={"seconds": 900, "step_s": 0.4}))
+    longest = read_lesson(lesson(teach={"seconds": 800, "step_s": 0.4})).cards[0].teach
+    assert longest is not None
+    assert longest.steps == MAX_CHANGES
     with pytest.raises(InvalidInput, match=r"field 'pace'.*agent, rival, seconds, step_s"):
         read_lesson(lesson(teach={"pace": 1}))
     answer = school.teacher.call(
