@@ -151,6 +151,14 @@ class Features:
             except Exception:  # the runs stay interrupted, and can be resumed by hand
                 _logger.exception("the feature %s cannot say which runs go on", feature.name)
 
+    def on_resumed(self) -> None:
+        """Let all features go on with the runs that were resumed; those that fail are logged."""
+        for feature in self:
+            try:
+                feature.on_resumed()
+            except Exception:
+                _logger.exception("the feature %s cannot go on with its runs", feature.name)
+
     def metrics(self) -> Iterator[Metric]:
         """Yield the metrics of all features; those of a feature that fails are left out."""
         for feature in self:

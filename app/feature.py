@@ -197,6 +197,9 @@ class Feature:
         """Return the ids of runs that a crash interrupted, and that are to be resumed."""
         return ()
 
+    def on_resumed(self) -> None:
+        """Go on with what belongs to the runs of `unfinished`, which are queued again now."""
+
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> Iterable[str]:
         """Delete data that was not used since a time, on servers that keep data for a limited time.
 

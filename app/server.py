@@ -334,6 +334,7 @@ def _resume_interrupted(services: Services) -> None:
             services.jobs.resume(run_id)
         except HexapodError as error:
             _logger.warning("an interrupted run is not resumed: %s", error)
+    services.features.on_resumed()
 
 
 async def _end_long_requests(app: FastAPI) -> None:

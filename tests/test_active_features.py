@@ -121,7 +121,7 @@ def test_a_run_is_refused_if_a_feature_cannot_say_whether_it_is_hidden(
 def test_a_feature_that_fails_later_stops_nothing_else(
     tmp_path: Path, add: Add, caplog: pytest.LogCaptureFixture
 ) -> None:
-    names = ("owner_of", "metrics", "unfinished", "options")
+    names = ("owner_of", "metrics", "unfinished", "on_resumed", "options")
     members = {name: vars(failing(name))[name] for name in names}
     add(type("Failing", (Feature,), {"name": "failing", **members}))
     with running(Settings(data=tmp_path, job_niceness=0)) as api:

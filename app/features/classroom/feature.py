@@ -133,6 +133,9 @@ class Classroom(Feature):
     def unfinished(self) -> Iterable[str]:
         return self.rooms.unfinished()
 
+    def on_resumed(self) -> None:
+        self.core.of(Teaching).follow_again()
+
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> list[str]:
         return self.rooms.delete_before(time, delete_runs)
 

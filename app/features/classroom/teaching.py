@@ -119,6 +119,14 @@ class Teaching:
     def _rooms(self) -> Rooms:
         return self._core.of(Rooms)
 
+    def follow_again(self) -> None:
+        """Follow the teachings of open rooms that go on after a start of the server."""
+        for room in self._rooms.open_rooms():
+            run = None if room.shown.teach is None else self._part(room, TAUGHT)
+            if run is not None and run.state in NOT_ENDED:
+                with suppress(Conflict, NotFound):  # it has ended meanwhile
+                    self._book_of(room, run)
+
     # ---- of the teacher
 
     def start(self, code: str) -> Room:

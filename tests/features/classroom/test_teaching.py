@@ -2,13 +2,15 @@
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
 
 from app.features.classroom.lesson import read_lesson
+from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.jobs.jobs import MAX_CHANGES
 from app.server import create_app
@@ -36,7 +38,14 @@ LESSON: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
-    settings = Settings(data=tmp_path_factory.mktemp("teaching"), job_niceness=0, token=TOKEN)
+    with serving(tmp_path_factory.mktemp("teaching")) as school:
+        yield school
+
+
+@contextmanager
+def serving(data: Path) -> Iterator[Class]:
+    """Serve a class from a folder."""
+    settings = Settings(data=data, job_niceness=0, token=TOKEN)
     with ExitStack() as stack:
         store = stack.enter_context(open_store(settings))
         client = TestClient(create_app(settings, store), base_url=ADDRESS, follow_redirects=False)
@@ -148,6 +157,17 @@ def test_both_robots_race_at_the_reveal_and_distances_are_told_then(school: Clas
     told = pupil.get(f"/rooms/{code}/teaching")
     walked = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
     assert [told[robot]["distance_m"] for robot in ("taught", "rival")] == walked
+
+
+def test_after_a_restart_a_room_shows_the_robot_that_it_teaches(tmp_path: Path) -> None:
+    with serving(tmp_path) as school:
+        code = school.room(LESSON)
+        run_id = begun(school, code)
+    with serving(tmp_path) as school:
+        shared = school.services.of(RoomStages).of(code)
+        assert shared is not None
+        assert shared.stage.state().run_id == run_id
+        assert school.teacher.get(f"/rooms/{code}/teaching")["state"] == "teaching"
 
 
 def test_a_card_that_is_not_there_ends_no_teaching(school: Class) -> None:
