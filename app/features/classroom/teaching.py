@@ -298,7 +298,7 @@ class Teaching:
             raise NotFound(f"card {room.card} teaches nothing")
         run = self._part(room, TAUGHT)
         race = None if run is None else self._race_of(room, run)
-        is_told = is_teacher or room.card in room.revealed
+        is_distance_shown = is_teacher or room.card in room.revealed
         config = self._training(room.shown, TAUGHT).config
         return TeachingView(
             card=room.card,
@@ -306,8 +306,8 @@ class Teaching:
             steps=teach.steps,
             step_s=config.robot.step_s,
             presses=[] if run is None else _presses(room, run),
-            taught=_robot(run, race, is_told=is_told),
-            rival=_robot(self._part(room, RIVAL), race, is_told=is_told),
+            taught=_robot(run, race, is_distance_shown=is_distance_shown),
+            rival=_robot(self._part(room, RIVAL), race, is_distance_shown=is_distance_shown),
             race_id=None if race is None else race.id,
         )
 
@@ -451,10 +451,10 @@ def _state(room: Room, run: Run | None) -> Literal["ready", "teaching", "frozen"
     return "frozen" if room.is_frozen else "teaching"
 
 
-def _robot(run: Run | None, race: Run | None, *, is_told: bool) -> TaughtRobot | None:
+def _robot(run: Run | None, race: Run | None, *, is_distance_shown: bool) -> TaughtRobot | None:
     if run is None:
         return None
-    if not is_told:
+    if not is_distance_shown:
         return TaughtRobot(run_id=run.id, distance_m=None)
     raced = race.result.lanes if race is not None and isinstance(race.result, RaceResult) else ()
     walked = {lane.training_id: lane.total_distance_m for lane in raced}
