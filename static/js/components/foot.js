@@ -1,14 +1,13 @@
 // The foot of the panel: the primary button, the running work, what failed, and what a spectator can do.
 import {
-  canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume,
-  runPrimaryAction, secondaryActions, stop,
+  canStart, dismissProblem, missingLane, pending, primaryAction, problems, runPrimaryAction, secondaryActions,
 } from "../actions.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
 import { percentage, sentence } from "../format.js";
 import { ignored, page } from "../page-state.js";
 import { isFootOpen, isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
-import { isGuest, isOperator, mayStart } from "../selectors.js";
+import { isGuest, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
 import { isAway, scene } from "../store.js";
 import { labelOf, messageOf } from "../titles.js";
@@ -149,30 +148,13 @@ const SecondaryActions = () => html`
 function WorkActions() {
   if (!work.value) return null;
   return html`
-    <${Progress} />${(isAtLeast("try") || isGuest.value) && html`<${WorkButtons} />`}
+    <${Progress} />${(isAtLeast("try") || isGuest.value) && html`
+      <${Loaded} name="buttons of the work" load=${loadButtons} isQuiet />
+    `}
   `;
 }
 
-function WorkButtons() {
-  const { kind, state } = work.value?.current ?? {};
-  const isPaused = state === "paused";
-  // Events tell of a new state before the command is answered; a click in between would be lost.
-  // Not `disabled`, by which the button would lose the keyboard's focus.
-  const isHeld = pending.value.work || isAway.value ? "true" : undefined;
-  return html`
-    <div class="row">
-      ${isOperator.value && html`
-        <button class="secondary" onClick=${isPaused ? resume : pause} aria-disabled=${isHeld}
-          disabled=${state === "queued"}>
-          <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"} ${kind}
-        </button>
-      `}
-      <button class="secondary" onClick=${stop} aria-disabled=${isHeld}>
-        <${Icon} name="stop" />Stop
-      </button>
-    </div>
-  `;
-}
+const loadButtons = () => import("./work-buttons.js").then(({ WorkButtons }) => WorkButtons);
 
 function Progress() {
   const shown = progress.value;
