@@ -126,7 +126,8 @@ def test_thirty_pupils_teach_a_robot_to_walk(
         is_accessible(pupil)
 
         presses_by_thumb_and_by_key(pupil)
-        expect(screen.get_by_text("Taught by the reward")).to_be_visible()
+        rival = screen.frame_locator(".rival-robot iframe").frame_locator("iframe")
+        expect(rival.get_by_text("Taught by the reward")).to_be_visible()
         expect(strip).to_contain_text(re.compile(r"[1-9]\d* praised"))
         expect(screen.locator(".rival-robot iframe")).to_be_visible()
         screen.wait_for_timeout(6000 if SHOTS else 0)

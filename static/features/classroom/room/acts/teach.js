@@ -22,7 +22,6 @@ function Teach({ classroom, isRevealed }) {
   const by = rivalTeacher(classroom.shown.teach);
   const isRaced = isRevealed && now.race_id !== null;
   return html`
-    <p class="robot-name of-class">${isRaced ? "Their race" : "Taught by you"}</p>
     ${isRaced
       ? html`<${Tables} now=${now} by=${by} />`
       : html`<${RivalRobot} run_id=${now.rival?.run_id ?? null} by=${by} />`}
@@ -63,10 +62,7 @@ function Outcome({ now: { presses, taught, rival }, by }) {
           </div>
         `)}
       </dl>
-      <p>
-        You praised ${count(praised, "step")} and rebuked ${rebuked}: so it walks
-        ${" "}${metres(taught?.distance_m ?? null)} in 50 steps, and never saw the reward.
-      </p>
+      <p>You praised ${count(praised, "step")} and rebuked ${rebuked}: it never saw the reward.</p>
     </div>
   `;
 }
@@ -88,7 +84,6 @@ function RivalRobot({ run_id, by }) {
   return html`
     <section class="rival-robot" aria-label="The other robot">
       <iframe ref=${frame} src=${address} title=${`The robot that ${by} teaches, in 3D`} tabindex="-1"></iframe>
-      <p class="robot-name">Taught by ${by}</p>
     </section>
   `;
 }
