@@ -196,7 +196,6 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--agent", "no_module:Agent"), "cannot import no_module"),
         ((*GAIT, "--from", "missing.npz"), "missing.npz"),
         ((*GAIT, "--out", "no/such/folder/q.npz"), "choose a folder that can be written"),
-        ((), "--gait"),
     ],
 )
 def test_invalid_input_to_train_is_refused_in_one_sentence(

@@ -211,7 +211,7 @@ def test_entries_that_the_rules_do_not_allow_are_refused(
 @pytest.mark.parametrize(
     ("body", "field", "words"),
     [
-        ({"rules": {}}, "rules.gait", "gait"),
+        ({"rules": {"gait": "moonwalk"}}, "", "left-right-origin"),
         ({"rules": {"draws": 2}}, "rules.draws", "draws must be"),
         ({"rules": {"steps": 6000}}, "rules.steps", "steps must be a whole number from 1 to 5,000"),
         ({"rules": {"transitions": 100_001}}, "rules.transitions", "from 500 to 100,000"),
