@@ -188,6 +188,14 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
         InvalidInput: if the file cannot be read, or its robot or its name is not valid.
         DamagedFile: if it is no robot.
         NotRead: if no process can be started to read it.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> dog = hx.load_robot("dog.json", name="Rex")
+        >>> dog.name, len(dog.legs)
+        ('Rex', 4)
+        >>> hx.train(robot=dog, gait="trot", steps=20, simulator="kinematic").config.robot.name
+        'Rex'
     """
     if name is not None and len(name) > MAX_NAME:
         raise InvalidInput(f"a robot's name is a text of at most {MAX_NAME} characters")
@@ -216,6 +224,13 @@ def recommended_agent(
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> hx.recommended_agent("dog")  # stands while two of its legs swing
+        'linear-model'
+        >>> hx.recommended_agent("dog", "bound")  # tips
+        'multilevel-model'
     """
     parsed = read_robot(robot)
     gait = own_gait(parsed) if gait is None else read_gait(gait)

@@ -197,6 +197,12 @@ def benchmark(
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         ClusterLost: if the processes cannot be started, or are lost.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> done = hx.benchmark("greedy", tasks="tripod", seeds=1, workers=1)
+        >>> done
+        <Benchmark greedy, hexabench-1, a part of the protocol: 0.986>
     """
     check_callable("on_run", on_run)
     check_main_module()

@@ -35,6 +35,12 @@ def compare(
     Raises:
         InvalidInput: if a group is empty, has a number that is not finite, or trainings beside
             numbers; or if what is to be paired has no seeds in common.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> comparison = hx.compare([0.50, 0.48, 0.51], [0.40, 0.41, 0.39], names=("New", "Old"))
+        >>> round(comparison.difference.value, 3), comparison.ahead, comparison.further_seeds
+        (0.097, 'not established', 2)
     """
     groups = [_points(group, name) for group, name in zip((a, b), names, strict=True)]
     seeds = [_seeds(group, name) for group, name in zip((a, b), names, strict=True)]

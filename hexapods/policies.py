@@ -46,6 +46,16 @@ def policy(predict: Callable[..., Any], *, name: str | None = None) -> Policy:
 
     Raises:
         InvalidInput: if it is no function, or the name is not valid.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> import numpy as np
+        >>> def lowest_legal(observation, action_masks):
+        ...     return int(np.flatnonzero(action_masks)[0])
+        >>> lanes = [hx.policy(lowest_legal, name="Lowest"), "greedy"]
+        >>> race = hx.race(lanes, simulator="kinematic", steps=6)
+        >>> [standing.agent for standing in race.standings]
+        ['greedy', 'Lowest']
     """
     if not callable(predict):
         raise InvalidInput(f"a policy is a function such as model.predict, not {predict!r}")

@@ -116,6 +116,14 @@ def train(
         TableMismatch: if the table is of another walking problem or agent.
         Diverged: if the physics diverges.
         Interrupted: a `KeyboardInterrupt`, once the checkpoint is written.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> training = hx.train("q-learning", steps=100, seed=0, simulator="kinematic")
+        >>> training
+        <Training of q-learning: 100 steps, 0.24 m>
+        >>> [(point.step, round(point.distance_m, 2)) for point in training.curve]
+        [(50, 0.04), (100, 0.24)]
     """
     check_callable("on_record", on_record)
     path = None if checkpoint is None else path_of(checkpoint, "a checkpoint")
@@ -143,6 +151,16 @@ def resume(
         DamagedFile: if it is no table, or was changed since it was written.
         Diverged: if the physics diverges.
         Interrupted: as `train`.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> problem = {"steps": 100, "seed": 0, "simulator": "kinematic"}
+        >>> practice = hx.iter_train("sarsa", **problem)
+        >>> while practice.step < 40:
+        ...     _ = next(practice)
+        >>> path = practice.training.save("half.npz")
+        >>> hx.resume(path).distance_m == hx.train("sarsa", **problem).distance_m
+        True
     """
     check_callable("on_record", on_record)
     interrupted = read_table(checkpoint)
@@ -244,6 +262,17 @@ def iter_train(
     Raises:
         UnknownName, InvalidInput, TableMismatch: at the call, as `train`.
         Diverged: if the physics diverges.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> practice = hx.iter_train("q-learning", steps=100, seed=0, simulator="kinematic")
+        >>> for record in practice:
+        ...     if isinstance(record, hx.Evaluated):
+        ...         print(record.step, round(record.distance_m, 2))
+        50 0.04
+        100 0.24
+        >>> practice.training
+        <Training of q-learning: 100 steps, 0.24 m>
     """
     return _begun(agent, table, changes, given_arguments(locals(), FIELDS, "settings"), record)
 
@@ -295,6 +324,14 @@ def evaluate(
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if the table is of another walking problem or agent.
         Diverged: if the physics diverges.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> round(hx.evaluate("greedy", simulator="kinematic"), 2)
+        0.5
+        >>> training = hx.train("q-learning", steps=100, seed=0, simulator="kinematic")
+        >>> hx.evaluate(training) == training.distance_m
+        True
     """
     fields_and_settings = given_arguments(locals(), FIELDS, "settings")
     name, trained = learned_by(agent, table)

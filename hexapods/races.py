@@ -231,6 +231,12 @@ def lane(
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if the table was learned by another agent.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> lanes = [hx.lane("look-ahead", depth=2), hx.lane("greedy", observation="planned")]
+        >>> hx.race(lanes, simulator="kinematic", steps=6, seed=0).failed
+        {}
     """
     if isinstance(agent, Policy):
         check_names("a policy's lane", settings, _LANE_ARGUMENTS)
@@ -284,6 +290,15 @@ def race(
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if a training is of another walking problem.
         IllegalAction: if a policy returns no legal action; what it raises itself is raised.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> training = hx.train("q-learning", steps=100, seed=0, simulator="kinematic")
+        >>> race = hx.race([training, "greedy"], steps=10)  # in the simulator of the training
+        >>> for standing in race.standings:
+        ...     print(standing.rank, standing.agent, round(standing.total_distance_m, 2))
+        1 greedy 0.1
+        2 q-learning -0.01
     """
     check_names("a race", walk, ("steps", "seed", *WALK))
     check_callable("on_step", on_step)
@@ -333,6 +348,12 @@ def load(path: str | os.PathLike[str]) -> Training | Race:
     Raises:
         InvalidInput: if the file cannot be read.
         DamagedFile: if it holds neither, or was changed since it was written.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> race = hx.race(["greedy"], simulator="kinematic", steps=6)
+        >>> hx.load(race.save("race.npz")).standings == race.standings
+        True
     """
     file = path_of(path, "a file")
     try:

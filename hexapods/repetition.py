@@ -294,6 +294,18 @@ def experiment(
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         ClusterLost: if the processes cannot be started, or are lost.
         ResultNotStored: if a result cannot be written to the folder.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> sweep = hx.experiment(
+        ...     "sweep", simulator="kinematic", seeds=3, gaits="left-right-origin", steps=20,
+        ...     alpha=[0.1, 0.6], workers=1,
+        ... )
+        >>> for setting in sweep.settings:
+        ...     print(setting.name, setting.seeds, round(setting.iqm_m, 2))
+        Greedy 1 0.5
+        Q-learning, 20 steps, α 0.1 3 0.03
+        Q-learning, 20 steps, α 0.6 3 0.04
     """
     fields_and_settings = given_arguments(locals(), _FIELDS, "settings")
     from hexapods.experiments.summary import summarise  # noqa: PLC0415  # slow to import

@@ -79,6 +79,13 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TooLong: if the race does not fit into a page.
+
+    Examples:
+        >>> import hexapods as hx
+        >>> race = hx.race(["greedy", "wave"], simulator="kinematic", steps=6)
+        >>> page = hx.view(race, title="Greedy and Wave")
+        >>> page.save("race.html").exists()
+        True
     """
     # Only here: viser takes longer to import than all else.
     from hexapods.drawing.replay_encoding import encode_frames, encode_scene  # noqa: PLC0415
