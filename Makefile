@@ -145,8 +145,13 @@ check-page-types: $(PAGE_STAMP)
 		echo "$(PAGE_TYPES) is not what the API answers: renew it by 'make page-types'"; exit 1; }
 
 .PHONY: docs
-docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
+docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs, and check its links
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs build/docs
+	$(BIN)/python -m tests.docs.site_links build/docs
+
+.PHONY: docs-external
+docs-external: docs ## Count the links of the built site to other sites; none is opened
+	$(BIN)/python -m tests.docs.site_links build/docs --external
 
 # The wheel is built from the unpacked sdist: whoever has the sdist alone gets the same. Away from the
 # repository, whose .gitignore would hide from the linter what is below build/.

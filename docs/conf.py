@@ -2,11 +2,14 @@
 
 import contextlib
 import io
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from docutils import nodes
+from sphinx import addnodes
 from sphinx.application import Sphinx
 
 import hexapods
@@ -22,22 +25,21 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 html_theme = "furo"
 html_title = f"Racing Hexapods {version}"
 html_static_path: list[str] = []
-exclude_patterns = ["reproduction", "examples", "notebooks"]
+exclude_patterns = ["reproduction", "notebooks"]
 source_suffix = {".md": "markdown"}
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence"]
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = True
-# Links to files of the repository stand for its readers; the site has no copy of them.
-suppress_warnings = ["myst.xref_missing"]
 
 _GENERATED = Path(__file__).parent / "_generated"
 
 
 def setup(site: Sphinx) -> None:
-    """Write the references before the site is read."""
+    """Write the references before the site is read, and `llms.txt` when it is built."""
     site.connect("builder-inited", lambda _: _write_references())
+    site.connect("build-finished", _write_contents)
 
 
 def _write_references() -> None:
@@ -52,6 +54,34 @@ def _write(name: str, lines: Iterator[str]) -> None:
     # Unchanged, so that the next build reads it again only if the code has changed.
     if not path.exists() or path.read_text("utf-8") != text:
         path.write_text(text, "utf-8")
+
+
+def _write_contents(site: Sphinx, error: Exception | None) -> None:
+    """Write `llms.txt` (llmstxt.org): title, summary, and pages by part, as the index has them."""
+    if error is None and site.builder.format == "html":
+        path = Path(site.outdir) / "llms.txt"
+        path.write_text("\n".join(_contents(site)) + "\n", "utf-8")
+
+
+def _contents(site: Sphinx) -> Iterator[str]:
+    index = site.env.get_doctree(site.config.root_doc)
+    yield f"# {project}\n"
+    yield f"> {_summary(index)}"
+    for tree in index.findall(addnodes.toctree):
+        yield f"\n## {tree['caption']}\n"
+        for _, name in tree["entries"]:
+            title = site.env.titles[name].astext()
+            summary = _summary(site.env.get_doctree(name))
+            address = site.builder.get_relative_uri(site.config.root_doc, name)
+            yield f"- [{title}]({address}){f': {summary}' if summary else ''}"
+
+
+def _summary(page: nodes.document) -> str:
+    """Return the first sentence of a page; "" if it begins with none."""
+    paragraph = next(iter(page.findall(nodes.paragraph)), None)
+    text = "" if paragraph is None else " ".join(paragraph.astext().split())
+    sentence = re.match(r".+?[.:](?= [A-Z]|$)", text)
+    return text if sentence is None else sentence[0]
 
 
 def _rest() -> Iterator[str]:

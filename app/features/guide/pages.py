@@ -1,6 +1,7 @@
 """The guide: the project's documentation as pages of this server, which needs no network."""
 
 import re
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -19,56 +20,39 @@ from hexapods.version import __version__
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
-CONTENTS = (
-    (
-        "Start",
-        (
-            "page",
-            "tutorial",
-            "worlds",
-            "replays",
-            "comparing",
-            "spectators",
-            "classroom",
-            "tournaments",
-            "privacy",
-            "exports",
-        ),
-    ),
-    (
-        "Experiments",
-        (
-            "experiments",
-            "figures",
-            "benchmark",
-            "outside-baselines",
-            "python",
-            "operations",
-            "hosting",
-            "behind-a-proxy",
-            "frames",
-        ),
-    ),
-    (
-        "How it works",
-        (
-            "learners",
-            "linear-model",
-            "creatures",
-            "robot-files",
-            "servos",
-            "search",
-            "explanations",
-            "gait-analysis",
-        ),
-    ),
-    ("Inside", ("architecture",)),
-)
-"""Pages of the guide by heading: names of files in `docs/`, without their ending."""
-_NAMES = frozenset(name for _, names in CONTENTS for name in names)
+FIRST = "page"
+"""Name of the page to which the address of the guide leads."""
 _PAGE = re.compile(r"((?P<name>[\w-]+)\.md)?(?P<part>#[\w-]+)?")
 _ELSEWHERE = re.compile(r"https?://.+")
 _NOT_IN_SLUG = re.compile(r"[^\w\- ]")
+_PART = re.compile(r"^```\{toctree\}\n:caption: (?P<caption>.+)\n(?P<lines>[^`]*)", re.MULTILINE)
+_NAME = re.compile(r"[\w-]+")
+
+
+@cache
+def contents(folder: Path) -> Mapping[str, Sequence[str]]:
+    """Return the names of the pages by part, as the index of the documentation has them.
+
+    Left out is what only its site has: references that are written from the code, and subfolders.
+
+    Args:
+        folder: folder of the documentation, in Markdown.
+    """
+    index = (folder / "index.md").read_text("utf-8")
+    return {
+        part["caption"]: [
+            name
+            for name in part["lines"].splitlines()
+            if _NAME.fullmatch(name) and (folder / f"{name}.md").is_file()
+        ]
+        for part in _PART.finditer(index)
+    }
+
+
+@cache
+def names_of(folder: Path) -> frozenset[str]:
+    """Return the names of all pages."""
+    return frozenset(name for names in contents(folder).values() for name in names)
 
 
 def guide_routes(folder: Path) -> list[BaseRoute]:
@@ -81,8 +65,8 @@ def guide_routes(folder: Path) -> list[BaseRoute]:
     @policy(access=WATCH)
     def show(request: Request) -> Response:
         name = request.path_params["name"]
-        if name not in _NAMES:
-            names = ", ".join(sorted(_NAMES))
+        if name not in names_of(folder):
+            names = ", ".join(sorted(names_of(folder)))
             return problem(404, f"The guide has no page {name!r}; it has {names}.")
         return HTMLResponse(_page(folder, name))
 
@@ -90,7 +74,7 @@ def guide_routes(folder: Path) -> list[BaseRoute]:
     def first(request: Request) -> Response:
         del request
         # Relative, so that it is valid behind a proxy that serves the app under a prefix.
-        return RedirectResponse(f"guide/{CONTENTS[0][1][0]}")
+        return RedirectResponse(f"guide/{FIRST}")
 
     return [
         GuardedPage("/guide", first, name="guide_start"),
@@ -108,7 +92,8 @@ def _page(folder: Path, name: str) -> str:
     shown = [token for token in tokens if not _is_directive(token)]
     _add_anchors(shown)
     for token in shown:
-        token.children = _linked(token.children, name) if token.children else token.children
+        if token.children:
+            token.children = _linked(token.children, name, names_of(folder))
     body = markdown.renderer.render(shown, markdown.options, {})
     return render(
         "guide.html",
@@ -117,7 +102,7 @@ def _page(folder: Path, name: str) -> str:
         name=name,
         contents=[
             (heading, [(page, _title(folder, page)) for page in names])
-            for heading, names in CONTENTS
+            for heading, names in contents(folder).items()
         ],
         body=Markup(body),  # noqa: S704 - of files of the project, whose HTML is escaped
         version=__version__,
@@ -143,18 +128,27 @@ def _add_anchors(tokens: list["Token"]) -> None:
             token.attrSet("id", words.replace(" ", "-"))
 
 
-def _linked(tokens: list["Token"], name: str) -> list["Token"]:
+def _linked(tokens: list["Token"], name: str, names: Collection[str]) -> list["Token"]:
     """Rewrite links between documents to pages of the guide; drop pictures and links to files.
 
     Args:
         tokens: inline tokens of a page.
         name: of this page.
+        names: of all pages.
     """
     for token in tokens:
+        if token.type != "link_open":
+            continue
         href = str(token.attrGet("href") or "")
         page = _PAGE.fullmatch(href)
-        if page and (page["name"] or name) in _NAMES:
+        if page and (page["name"] or name) in names:
             token.attrSet("href", f"{page['name'] or name}{page['part'] or ''}")
         elif not _ELSEWHERE.fullmatch(href):  # a file of the repository
             token.attrs.pop("href", None)
-    return [token for token in tokens if token.type != "image"]
+    shown: list[Token] = []
+    for token in tokens:
+        if token.type == "link_close" and shown and shown[-1].type == "link_open":
+            shown.pop()  # a link of a picture alone
+        elif token.type != "image":
+            shown.append(token)
+    return shown

@@ -4,28 +4,38 @@ import re
 from collections.abc import Callable
 from urllib.parse import urljoin
 
-from app.features.guide.pages import CONTENTS
+from app.features.guide.pages import contents, names_of
 from hexapods import assets
 from tests.api.calls import Api, refused
+
+DOCS = assets.docs_dir()
+NAMES = sorted(names_of(DOCS))
+
+
+def test_the_guide_has_four_parts_with_every_page_but_those_for_who_publishes() -> None:
+    assert [*contents(DOCS)] == ["Tutorial", "How to", "Reference", "Explanation"]
+    written = {path.stem for path in DOCS.glob("*.md")}
+    assert written - {*NAMES} == {"index", "releasing"}
 
 
 def test_each_page_is_shown_with_its_title_and_links_to_the_others(
     shared: Callable[..., Api],
 ) -> None:
     client = shared().client
-    for name in (page_name for _, names in CONTENTS for page_name in names):
+    for name in NAMES:
         page = client.get(f"/guide/{name}")
         assert page.status_code == 200
-        title = (assets.docs_dir() / f"{name}.md").read_text("utf-8").partition("\n")[0][2:]
+        title = (DOCS / f"{name}.md").read_text("utf-8").partition("\n")[0][2:]
         assert f"<title>{title}" in page.text.replace("&#39;", "'")
         assert "{toctree}" not in page.text  # a directive of Sphinx
+        assert re.findall(r"</\w+ |<a[^>]*></a>", page.text) == [], name
 
 
 def test_links_lead_to_pages_of_the_server_or_elsewhere_and_to_no_file_that_it_lacks(
     shared: Callable[..., Api],
 ) -> None:
     client = shared().client
-    for name in (page_name for _, names in CONTENTS for page_name in names):
+    for name in NAMES:
         main = client.get(f"/guide/{name}").text.partition("<main>")[2]
         assert [
             href
@@ -47,7 +57,7 @@ def test_links_of_the_contents_lead_to_pages(shared: Callable[..., Api]) -> None
 
 def test_links_to_a_part_of_a_page_find_it(shared: Callable[..., Api]) -> None:
     client = shared().client
-    for name in (page_name for _, names in CONTENTS for page_name in names):
+    for name in NAMES:
         for other, anchor in re.findall(
             r'href="([\w-]+)#([\w-]+)"', client.get(f"/guide/{name}").text
         ):
