@@ -1,11 +1,13 @@
-"""Folders of the dashboard, of its documentation and of the robots' MJCF.
+"""Folders of the dashboard, of its documentation and of the robots' MJCF; styles as they are sent.
 
 Inside the package when it was installed from a wheel, beside it in a checkout.
 """
 
+import re
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
+_COMMENTS_OF_STYLES = re.compile(rb"/\*.*?\*/\s*", re.DOTALL)
 
 
 def static_dir() -> Path:
@@ -21,6 +23,11 @@ def docs_dir() -> Path:
 def models_dir() -> Path:
     """The folder of the MJCF files that a robot is put together from."""
     return _find("models")
+
+
+def without_comments(style: bytes) -> bytes:
+    """Return a style sheet without its comments, which no browser needs."""
+    return _COMMENTS_OF_STYLES.sub(b"", style)
 
 
 def _find(name: str) -> Path:

@@ -57,8 +57,9 @@ def import_map(entry: str) -> str:
 
 
 def styles(*names: str) -> str:
-    """Return style sheets below `static`, one after the other."""
-    return "\n".join((assets.static_dir() / name).read_text("utf-8") for name in names)
+    """Return style sheets below `static`, one after the other, without comments."""
+    files = (assets.static_dir() / name for name in names)
+    return "\n".join(assets.without_comments(file.read_bytes()).decode() for file in files)
 
 
 def data_block(name: str, data: Mapping[str, Any] | bytes) -> str:

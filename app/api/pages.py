@@ -26,6 +26,7 @@ from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, R
 from app.api.problem_pages import prefers_html
 from app.api.problems import problem
 from app.storage.errors import NotFound
+from hexapods.assets import without_comments
 
 _INLINE_SCRIPT = re.compile(
     r"<script(?![^>]*\ssrc=|[^>]*application/json)[^>]*>(.*?)</script>", re.DOTALL
@@ -35,7 +36,6 @@ _PARTS = ("text/javascript", "text/css")
 """Media types of what a page loads, and a browser does not show by itself."""
 _POLICY_OF_PARTS = {"Content-Security-Policy": "default-src 'none'; frame-ancestors 'self'"}
 """Shorter than that of other files: a first visit loads some sixty of them."""
-_COMMENTS_OF_STYLES = re.compile(rb"/\*.*?\*/\s*", re.DOTALL)
 """They are for who reads the sources, and more than a kilobyte of a first visit."""
 _INDEX = "index.html"
 _HTML = '<html lang="en">'
@@ -292,7 +292,7 @@ class _Files(StaticFiles):
             policy = _POLICY_OF_PARTS if media_type in _PARTS else {}
             content = Path(path).read_bytes()
             if media_type == "text/css":
-                content = _COMMENTS_OF_STYLES.sub(b"", content)
+                content = without_comments(content)
             cached = (version, CompressedContent(content, media_type, policy))
             self._contents[file] = cached
         return cached[1].response(scope)

@@ -211,7 +211,7 @@ class Window(NamedTuple):
 
 
 # Those in which the stage has the sizes of the prototype's.
-WINDOWS = [Window((1320, 852), (1280, 720), 0.35), Window((390, 844), (390, 700), 0.45)]
+WINDOWS = [Window((1296, 844), (1280, 720), 0.35), Window((390, 844), (390, 700), 0.45)]
 _ALONE = (
     ".stage { position: fixed !important; inset: 0 0 auto; height: 700px !important; z-index: 9; }"
 )

@@ -187,8 +187,13 @@ def test_a_server_that_is_killed_leaves_no_half_robot(
         for robot_id in ids:
             document = server.client.get(f"/api/v1/robots/{robot_id}/file").content
             assert robot_documents.id_of(document) == robot_id
+        # What was deleted can be restored for an hour: its files stay as long.
         files = {path.name for path in tmp_path.glob("robots/*/*")}
-        assert files == {f"{robot_id}.json" for robot_id in ids}
+        assert {f"{robot_id}.json" for robot_id in ids} <= files
+        assert files <= {f"{robot_id}.json" for robot_id in {*ids, *robots.deleted, robots.last}}
+        assert robots.deleted - set(ids) - {robots.last} <= {
+            name.removesuffix(".json") for name in files
+        }
 
 
 @dataclass

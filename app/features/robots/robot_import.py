@@ -122,7 +122,10 @@ def _store_reading(
         raise InvalidInput("`reading` is the id of a reading, a text")
     choices = AS_FOUND
     if content.get("choices") is not None:
-        choices = from_json(Choices, content["choices"])
+        try:
+            choices = from_json(Choices, content["choices"])
+        except ValueError as error:
+            raise InvalidInput(f"`choices` are an object, as a reading has it: {error}") from None
     kept = readings.file(reading_id)
     imported = readings.read(reading_id, choices).valid_robot()
     given_name = name if name is not None else content.get("name")

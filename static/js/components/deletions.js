@@ -1,12 +1,12 @@
 // The deletions of a list that can be undone.
 import { deletions, forgetDeletion, refusals, restore, restoring } from "../deletions.js";
-import { shortTime } from "../format.js";
 import { html } from "./elements.js";
 
 /** @import { Take } from "../deletions.js" */
 
-/** @param {number} time_ms since 1970 */
-const clockTime = (time_ms) => shortTime(new Date(time_ms).toISOString());
+/** The time of day, also of tomorrow: it is an hour from now. @param {number} time_ms since 1970 */
+const clockTime = (time_ms) =>
+  new Date(time_ms).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit", hourCycle: "h23" });
 
 /**
  * What was deleted lately, and why it was not restored.
