@@ -260,7 +260,7 @@ def picture_of(page: Page) -> Frame:
     view = page.frame(url=re.compile("/viewer/"))
     assert view is not None
     labels = view.locator(".labels > div:not([hidden])")
-    wait_until(lambda: labels.count() >= 2)
+    wait_until(lambda: labels.count() >= 3)
     return view
 
 
