@@ -84,7 +84,7 @@ class _Piece(NamedTuple):
 
 
 class PictureFeed:
-    """Advances a stage ten times a second; `with feed:` runs it, once.
+    """Advances a stage ten times a second; `with feed:` runs it in a thread, once.
 
     While pages watch, it pushes the frames that the playhead comes to as `piece` events: whole
     segments, which are encoded once for everybody and are the same as those that pages fetch; at
@@ -133,7 +133,7 @@ class PictureFeed:
         while not self._stop.is_set():
             self._stage.changed.clear()
             try:
-                self._advance()
+                self.advance()
             except Exception:
                 # An error at one moment must not end the thread; it is logged once.
                 if not self._has_failed:
@@ -143,7 +143,8 @@ class PictureFeed:
                 self._has_failed = False
             self._stage.changed.wait(1 / _ADVANCES_PER_S)
 
-    def _advance(self) -> None:
+    def advance(self) -> None:
+        """Advance the stage to this moment, and push what the playhead comes to."""
         is_replanned = self._stage.advance()
         viewers = self._count_viewers()
         self._tell(viewers)
