@@ -375,6 +375,7 @@ def test_damaged_runs_are_named_everywhere_and_can_be_deleted(
 @pytest.mark.parametrize(
     ("column", "value"),
     [
+        ("config", "'{}'"),
         ("config", "'{\"steps\": -1}'"),
         ("kind", "'regatta'"),
         ("state", "'lost'"),
