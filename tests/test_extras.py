@@ -6,6 +6,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from functools import cache
+from importlib.machinery import ModuleSpec
 from importlib.metadata import packages_distributions
 from pathlib import Path
 from typing import NamedTuple
@@ -125,6 +126,11 @@ def test_a_missing_module_is_reported_in_one_line_with_the_command_that_installs
     assert "\n" not in str(raised.value)
 
 
+def test_in_an_environment_with_pip_the_command_is_of_pip(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: ModuleSpec(name, None))
+    assert install_command("gym", "mcap") == 'pip install "racing-hexapods[gym,mcap]"'
+
+
 @pytest.mark.parametrize(
     ("marks", "command"),
     [
@@ -137,7 +143,6 @@ def test_a_missing_module_is_reported_in_one_line_with_the_command_that_installs
 def test_in_an_environment_of_uv_the_command_is_of_uv(
     marks: tuple[str, ...], command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert install_command("gym", "mcap") == 'pip install "racing-hexapods[gym,mcap]"'
     (tmp_path / "tool").mkdir()
     for mark in marks:
         (tmp_path / mark).touch()

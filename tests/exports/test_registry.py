@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from hexapods import extras
 from hexapods.exports.registry import EXPORTS
 
 ROOT = Path(__file__).parents[2]
@@ -14,5 +13,5 @@ def test_the_document_has_a_row_for_each_file() -> None:
         for file in export.files:
             command = f"`hexapods runs {name} RUN --out walk.{file.ending}`"
             request = f"`{export.method} /runs/{{id}}/{export.address(name, file)}`"
-            needs = "" if file.extra is None else f"`{extras.install_command(file.extra)}` "
+            needs = "" if file.extra is None else f'`pip install "racing-hexapods[{file.extra}]"` '
             assert f"| {file.title} | {command} | {request} | {needs}|" in rows
