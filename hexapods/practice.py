@@ -191,7 +191,7 @@ def _begun(
         name = TrainingConfig.agent if trained is None else trained.config.agent
     else:
         name, trained = learned_by(agent_name(agent), table)
-    config = check_savable(_config(name, trained, fields_and_settings))
+    config = check_savable(config_of(name, trained, fields_and_settings))
     check_ends(config.world.disturbances, config.steps)
     practice = Practice(config, None if trained is None else trained.table, changes, record)
     if not practice.has_presses:
@@ -340,7 +340,7 @@ def evaluate(
     if trained is not None:
         like = {"steps": trained.config.steps, "tolerance": trained.config.tolerance}
         fields_and_settings = {**trained.config.settings, **like, **fields_and_settings}
-    config = _config(name, trained, fields_and_settings)
+    config = config_of(name, trained, fields_and_settings)
     learner = build_learner(config)
     if trained is not None:
         check_fits(trained.table, config, config.observation)
@@ -452,7 +452,7 @@ class Practice(Iterator[TrainingRecord]):
         return f"<Practice of {config.agent}: {step:,} of {config.steps:,} steps>"
 
 
-def _config(
+def config_of(
     name: str, trained: Training | None, fields_and_settings: Mapping[str, Any]
 ) -> TrainingConfig:
     """Return the config of a training; what is not given is the table's, or the default."""

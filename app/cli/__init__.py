@@ -7,8 +7,8 @@ Commands: `serve`, `train`, `race`, `benchmark`, `runs` (list, show, delete), `v
 `program` makes the program of all, and runs one.
 Features add commands of their own, and verbs and verifiers of these (`commands`).
 Shared: `options` (options and readers of their values), `setting_options` (options of declared
-settings and of agents), `files` (files that users name),
-`stored_runs` (runs of a data folder), `robot_names` (stored robots by name), `server_client`
+settings and of agents), `files` (files that users name), `stored_runs` (runs of a data folder),
+`run_keeper` (computes runs that stay there), `robot_names` (stored robots by name), `server_client`
 (requests to a running server), `terminal` (progress bars and tables), `exit_codes`.
 """
 

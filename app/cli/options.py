@@ -99,6 +99,22 @@ class WalkOptions:
         }
 
 
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class KeepOptions:
+    """Whether a run is kept in the data folder, and as what."""
+
+    keep: Annotated[bool, Parameter(help="keep it in the data folder, for the page to show")] = (
+        False
+    )
+    name: Annotated[str | None, Parameter(metavar="TEXT", help="name of the kept run")] = None
+
+    def check(self) -> None:
+        """Raise InvalidInput if a run has a name that is not kept."""
+        if self.name is not None and not self.keep:
+            raise InvalidInput("--name is of a run that is kept; add --keep, or leave --name out")
+
+
 _TOO_DEEP = "it is nested too deeply"
 
 

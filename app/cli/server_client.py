@@ -3,6 +3,7 @@
 import json
 import urllib.error
 import urllib.request
+from collections.abc import Mapping
 from typing import Any
 
 from app.setting_fields import PREFIX
@@ -17,7 +18,7 @@ def call_server(
     settings: Settings,
     method: str,
     path: str,
-    body: bytes | None = None,
+    body: bytes | Mapping[str, Any] | None = None,
     media_type: str = "application/octet-stream",
 ) -> Any:
     """Send a request to the server of the data folder, and return its decoded JSON response.
@@ -26,17 +27,31 @@ def call_server(
         settings: data folder, and token if the server needs one.
         method: HTTP method.
         path: path without its leading slash.
-        body: body of the request, if any.
-        media_type: of the body.
+        body: body of the request, if any; a mapping is sent as JSON.
+        media_type: of a body of bytes.
 
     Raises:
         InvalidInput: if the server does not respond, or refuses.
     """
+    if body is not None and not isinstance(body, bytes):
+        body, media_type = json.dumps(body).encode(), "application/json"
+    data = _request(settings, method, path, body, media_type)
+    return json.loads(data) if data else None
+
+
+def fetch_from_server(settings: Settings, path: str) -> bytes:
+    """Return a file of the server of the data folder; arguments and errors as of `call_server`."""
+    return _request(settings, "GET", path)
+
+
+def _request(
+    settings: Settings, method: str, path: str, body: bytes | None = None, media_type: str = ""
+) -> bytes:
     address = read_address_file(settings.data)
     if address is None:
         raise InvalidInput(
             f"another process has the data folder {settings.data}, and does not say where it "
-            "listens; try again in a moment, or stop it"
+            "listens; try again in a moment, or once it has ended if it is a command with --keep"
         )
     headers = {"Content-Type": media_type} if body is not None else {}
     if settings.token is not None:
@@ -48,7 +63,7 @@ def call_server(
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
     try:
         with opener.open(request, timeout=_TIMEOUT_S) as answer:
-            data = answer.read()
+            data: bytes = answer.read()
     except urllib.error.HTTPError as error:
         with error:
             raise InvalidInput(_refusal(address, error)) from error
@@ -57,7 +72,7 @@ def call_server(
             f"the server that has the data folder {settings.data} does not answer at {address}; "
             "look at its log, or stop it"
         ) from error
-    return json.loads(data) if data else None
+    return data
 
 
 def _refusal(address: str, error: urllib.error.HTTPError) -> str:

@@ -7,16 +7,18 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Group, Parameter
 
 from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.files import check_writable, write_whole
-from app.cli.options import WALKING_PROBLEM, AsJson, Gait, WalkOptions, read_gait
+from app.cli.options import WALKING_PROBLEM, AsJson, Data, Gait, KeepOptions, WalkOptions, read_gait
 from app.cli.setting_options import AgentOptions, DeclaredOptions, flag
 from app.cli.terminal import progress
+from app.settings import Settings, read_settings
 from hexapods import practice
+from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import DEFAULT_GAIT
 from hexapods.domain.observation import Observation
@@ -25,7 +27,10 @@ from hexapods.domain.settings import declared_fields
 from hexapods.interruption import Interrupted
 from hexapods.runs.config import TrainingConfig, WalkingProblem, usable_agents
 from hexapods.runs.records import Evaluated, StepTaken, TrainingRecord
-from hexapods.trainings import Training, read_table
+from hexapods.trainings import Training, learned_by, read_table
+
+if TYPE_CHECKING:
+    from app.cli import run_keeper
 
 _WALK_SETTINGS = declared_fields(WalkingProblem)
 _PRACTICE_SETTINGS = {
@@ -34,7 +39,9 @@ _PRACTICE_SETTINGS = {
     if name not in (*_WALK_SETTINGS, "pace")  # the command has no pace
 }
 _PRACTICE = Group("Practice", sort_key=(2, 0))
+_LEARNERS = tuple(filter(learns, usable_agents()))
 _WALK = WalkOptions()
+_NOT_KEPT = KeepOptions()
 
 
 def train(
@@ -47,13 +54,15 @@ def train(
         Parameter(
             metavar="NAME",
             group=_PRACTICE,
-            completer=lambda _: usable_agents(),
-            help=f"{', '.join(usable_agents())}, or my.module:Agent; see `--agent NAME --help`",
+            completer=lambda _: _LEARNERS,
+            help=f"{', '.join(_LEARNERS)}, or my.module:Agent; see `--agent NAME --help`",
         ),
     ] = TrainingConfig.agent,
     table: Annotated[str | None, Parameter(name="--from", metavar="FILE")] = None,
     checkpoint: Annotated[str | None, Parameter(name="--resume", metavar="FILE")] = None,
     out: Annotated[str | None, Parameter(metavar="FILE")] = None,
+    keeping: KeepOptions = _NOT_KEPT,
+    data: Data = None,
     as_json: AsJson = False,
     **settings: Annotated[
         Any,
@@ -69,26 +78,27 @@ def train(
     Args:
         observation: how the agent reads the state
         table: continue from this table
-        checkpoint: go on with an interrupted training from its checkpoint, exactly where it was;
-            only --out and --json go with it
-        out: file to save the table to, such as q.npz; a training that Ctrl-C interrupts is kept
-            in q.checkpoint.npz
+        checkpoint: go on from a checkpoint, exactly; only with --out, --json
+        out: file for the table (q.npz); Ctrl-C keeps q.checkpoint.npz
 
     Raises:
         HexapodError: if the options are not valid, or a file cannot be read or written.
     """
+    keeping.check()
     if checkpoint:
-        options = {"gait": gait, "observation": observation, "agent": agent, "from": table}
-        _check_nothing_else({**asdict(walk), **options}, settings)
+        kept = {"keep": keeping.keep, "gait": gait, "observation": observation, "agent": agent}
+        _check_nothing_else({**asdict(walk), **kept, "from": table}, settings)
         out = out or checkpoint
     if out:
         check_writable(out)
+    if not checkpoint:
+        problem = {"gait": read_gait(gait), **walk.fields(), "observation": observation}
+        settings = {**problem, **settings}
+    if keeping.keep:
+        kept_in = read_settings(data=data)
+        return _keep(agent, settings, table, kept_in, name=keeping.name, out=out, as_json=as_json)
     try:
-        if checkpoint:
-            training = _resume(checkpoint)
-        else:
-            problem = {"gait": read_gait(gait), **walk.fields(), "observation": observation}
-            training = _train(agent, {**problem, **settings}, table, out)
+        training = _resume(checkpoint) if checkpoint else _train(agent, settings, table, out)
     except Interrupted as interrupted:
         _say_how_to_go_on(interrupted, out, as_json)
         return INTERRUPTED
@@ -97,18 +107,83 @@ def train(
         if checkpoint and Path(checkpoint) == _checkpoint_of(out):
             Path(checkpoint).unlink()
     if as_json:
-        curve = [point._asdict() for point in training.curve]
-        result = None if training.result is None else to_json(training.result)
-        print(json.dumps({"config": to_json(training.config), "result": result, "curve": curve}))
+        print(json.dumps(_as_json(training)))
     else:
         _print_result(training, out)
     return FAILED if training.result is None else 0
 
 
+def _as_json(training: Training) -> dict[str, Any]:
+    curve = [point._asdict() for point in training.curve]
+    result = None if training.result is None else to_json(training.result)
+    return {"config": to_json(training.config), "result": result, "curve": curve}
+
+
+def _keep(
+    agent: str,
+    options: Mapping[str, Any],
+    table: str | None,
+    kept_in: Settings,
+    *,
+    name: str | None,
+    out: str | None,
+    as_json: bool,
+) -> int:
+    """Train, and keep the training in the data folder, with a progress bar."""
+    # Imported here, as the database modules would slow the start of other commands.
+    from app.cli import run_keeper  # noqa: PLC0415
+
+    run_keeper.check_keepable(agent)
+    _check_no_seed(table, options)
+    trained = read_table(table) if table else None
+    if trained is not None:
+        learned_by(agent, trained)
+    config = practice.config_of(agent, trained, options)
+    with progress() as bar:
+        task = bar.add_task("practising", total=config.steps)
+
+        def show(now: run_keeper.Progress) -> None:
+            state = "practising" if now.state == "running" else now.state
+            bar.update(task, completed=now.done, description=state)
+
+        kept = run_keeper.keep_training(
+            kept_in,
+            config,
+            name=name,
+            table=None if table is None else Path(table).read_bytes(),
+            on_progress=show,
+        )
+    return _report_kept(kept, config.steps, out, as_json=as_json)
+
+
+def _report_kept(
+    kept: "run_keeper.KeptTraining", steps: int, out: str | None, *, as_json: bool
+) -> int:
+    """Write the table to its file, print what has come of a kept training; return the exit code."""
+    ended, training = kept.progress, kept.training
+    if training is None:
+        how = "Stopped" if ended.state == "stopped" else f"It {ended.state}"
+        reason = "" if ended.error is None else f" ({ended.error.rstrip('.')})"
+        print(
+            f"{how} after {ended.done:,} of {steps:,} steps{reason}; they are kept as training "
+            f"{kept.id}, {ended.name!r}, which Resume on the page goes on with.",
+            file=sys.stderr,
+        )
+        return INTERRUPTED if kept.was_interrupted else FAILED
+    if out:
+        write_whole(out, training.to_bytes())
+    if as_json:
+        print(json.dumps({"id": kept.id, "name": ended.name, **_as_json(training)}))
+        return 0
+    _print_result(training, out)
+    where = "`hexapods serve` shows it" if kept.address is None else f"{kept.address} shows it"
+    print(f"It is kept as training {kept.id}, {ended.name!r}; {where}.")
+    return 0
+
+
 def _train(agent: str, options: Mapping[str, Any], table: str | None, out: str | None) -> Training:
     """Train an agent, from a table if there is one, with a progress bar."""
-    if table and "seed" in options:
-        raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
+    _check_no_seed(table, options)
     with _progress(options.get("steps", TrainingConfig.steps)) as show:
         return practice.train(
             agent,
@@ -117,6 +192,11 @@ def _train(agent: str, options: Mapping[str, Any], table: str | None, out: str |
             checkpoint=_checkpoint_of(out) if out else None,
             **options,
         )
+
+
+def _check_no_seed(table: str | None, options: Mapping[str, Any]) -> None:
+    if table and "seed" in options:
+        raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
 
 
 def _resume(checkpoint: str) -> Training:
@@ -151,6 +231,7 @@ def _check_nothing_else(options: Mapping[str, Any], settings: Mapping[str, Any])
         "gait": DEFAULT_GAIT,
         "observation": TrainingConfig.observation,
         "agent": TrainingConfig.agent,
+        "keep": False,
     }
     changed = [name for name, value in options.items() if value != defaults.get(name)]
     for name in (*changed, *settings):

@@ -48,6 +48,12 @@ def write_address_file(folder: Path, address: str) -> None:
         (folder / ADDRESS_FILE).write_text(json.dumps({"address": address}), "utf-8")
 
 
+def remove_address_file(folder: Path) -> None:
+    """Remove the URL of the folder's last server; call it while holding the folder's lock."""
+    with suppress(OSError):
+        (folder / ADDRESS_FILE).unlink(missing_ok=True)
+
+
 def read_address_file(folder: Path) -> str | None:
     """Return the URL that the folder's last server wrote; None if missing or invalid."""
     try:

@@ -126,8 +126,7 @@ def _store(
         path = f"api/v1/robots/readings?{urlencode({'file': kept.name})}"
         reading = call_server(settings, "POST", path, kept.data)
         body = {"reading": reading["id"], "choices": to_json(choices), "name": name}
-        request = json.dumps(body).encode()
-        return call_server(settings, "POST", "api/v1/robots", request, "application/json")
+        return call_server(settings, "POST", "api/v1/robots", body)
 
 
 def _draw(reading: RobotReading, file: str) -> None:
