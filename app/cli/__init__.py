@@ -2,13 +2,15 @@
 
 Its signature declares arguments and options, and its docstring is its description in `--help`.
 Commands: `serve`, `train`, `race`, `benchmark`, `runs` (list, show, delete), `verify`
-(by a `verifier` of each kind of file; score files in `verify_benchmark`), `doctor` (with checks in
-`machine_checks` and `data_checks`), `bench` (with the measurements in `benchmarks`).
+(by a `verifier` of each kind of file; score files in `verify_benchmark`), `config` (what holds of a
+`configuration`), `doctor` (with checks in `machine_checks` and `data_checks`), `bench` (with the
+measurements in `benchmarks`).
 `program` makes the program of all, and runs one.
 Features add commands of their own, and verbs and verifiers of these (`commands`).
 Shared: `options` (options and readers of their values), `setting_options` (options of declared
 settings and of agents), `files` (files that users name), `stored_runs` (runs of a data folder),
-`run_keeper` (computes runs that stay there), `robot_names` (stored robots by name), `server_client`
+`run_keeper` (computes runs that stay there), `configuration` (options of a file and of the
+environment), `robot_names` (stored robots by name), `server_client`
 (requests to a running server), `terminal` (progress bars and tables), `exit_codes`.
 """
 

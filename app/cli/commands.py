@@ -21,7 +21,10 @@ from hexapods.domain.errors import InvalidInput
 
 CORE_COMMANDS: Mapping[str, str] = {
     name: f"app.cli.{name}:{name}"
-    for name in ("serve", "train", "race", "benchmark", "runs", "verify", "doctor", "bench")
+    for name in (
+        *("serve", "train", "race", "benchmark", "runs", "verify"),
+        *("config", "doctor", "bench"),
+    )
 }
 GROUP = "hexapods.commands"
 """Entry-point group of commands of features of other packages."""

@@ -18,6 +18,7 @@ from rich.box import Box
 from rich.console import Console
 
 from app.cli.commands import command_paths, load
+from app.cli.configuration import FILE, OPTION, Configuration, sentence_of, take_option
 from app.cli.exit_codes import INTERRUPTED
 from app.cli.robot_names import stored_robots_known
 from app.cli.setting_options import with_options
@@ -31,10 +32,22 @@ _FORMAT = DefaultFormatter(panel_spec=PanelSpec(box=Box("    \n" * 8), padding=(
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command that the arguments name, and return its exit code; see `app.cli.main`."""
+    try:
+        path, words = take_option(arguments)
+        configuration = Configuration.read(path)
+        with configuration.settings_in_environment():
+            return _run(words, configuration)
+    except HexapodError as error:
+        print(f"hexapods: {error}", file=sys.stderr)
+        return 2
+
+
+def _run(arguments: Sequence[str], configuration: Configuration) -> int:
+    """Run a command; what its command line leaves open, a configuration may say."""
     name = "hexapods"
     try:
         with without_garbage_collection():
-            program = program_of(arguments)
+            program = program_of(arguments, configuration)
             chain, apps, _ = program.parse_commands(arguments)
             name = " ".join(("hexapods", *chain[:1]))
             command, bound, _ = program.parse_args(
@@ -44,7 +57,7 @@ def run(arguments: Sequence[str]) -> int:
                 verbs = [verb for verb in apps[-1] if not verb.startswith("-")]
                 raise CycloptsError(msg=f"name a command: {', '.join(verbs)}")
     except (CycloptsError, HexapodError) as error:
-        print(f"{name}: {_sentence(error)}", file=sys.stderr)
+        print(f"{name}: {_sentence(error, configuration)}", file=sys.stderr)
         return 2
     try:
         with stored_robots_known(bound.arguments.get("data")):
@@ -58,43 +71,51 @@ def run(arguments: Sequence[str]) -> int:
     return code or 0
 
 
-def _sentence(error: CycloptsError | HexapodError) -> str:
+def _sentence(error: CycloptsError | HexapodError, configuration: Configuration) -> str:
     """Return what is wrong with the arguments, and what is valid."""
     if isinstance(error, MissingArgumentError) and error.argument is not None:
         option, valid = error.argument, error.argument.parameter.help
         return f"{error.keyword or option.name} needs a value{f': {valid}' if valid else ''}"
     if isinstance(error, UnusedCliTokensError):
         return f"there is no argument {', '.join(map(repr, error.unused_tokens or ()))}; see --help"
-    return str(error)
+    return str(error) if isinstance(error, HexapodError) else sentence_of(error, configuration)
 
 
-def program_of(arguments: Sequence[str] | None = None) -> App:
+def program_of(
+    arguments: Sequence[str] | None = None, configuration: Configuration | None = None
+) -> App:
     """Return the program with the command that the arguments begin with, or else with all.
 
     Importing all of them takes twice the time in which most commands start.
 
     Args:
         arguments: of the command line, which may name agents; None for all commands and all agents.
+        configuration: may name an agent too, and says what else the command line leaves open.
 
     Raises:
         InvalidInput: as `command_paths`.
     """
     program = App(
         name="hexapods",
-        help="Six-legged robots that learn to walk, and race against look-ahead search.",
+        help="Six-legged robots that learn to walk, and race against look-ahead search.\n\n"
+        f"Settings and options may stand in {FILE}, or in the file of {OPTION}.",
         version=f"hexapods {__version__}",
         help_flags=_HELP,
         help_format="markdown",
         help_formatter=_FORMAT,
         default_parameter=Parameter(negative=(), allow_repeating=True, show_default=_shown),
     )
+    if configuration is not None:
+        program.config = configuration.sources(program)
     first, *words = arguments or (None,)
     for name, path in command_paths(first).items():
         function = load(path)
         if inspect.signature(function).return_annotation is App:
             program.command(function(), name=name)
         else:
-            shown = words if name == first else None
+            shown = [*words] if name == first else None
+            if shown is not None and configuration is not None:
+                shown += configuration.agent_words(name, shown)
             program.command(with_options(function, shown), name=name)
     program.register_install_completion_command(help="Install completion in the shell.")
     return program

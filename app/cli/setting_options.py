@@ -162,8 +162,10 @@ class AgentOptions:
                 return tokens[0].value
             owners = [agent for agent in usable_agents() if name in agent_settings(agent)]
             valid = ", ".join(map(self._flag, settings_by_name(named)))
+            (token,) = tokens
+            origin = "" if token.source in ("", "cli") else f" (from {token.source})"
             raise CycloptsError(
-                msg=f"{self._flag(name)} is no setting of {', '.join(named)}, which has "
+                msg=f"{self._flag(name)}{origin} is no setting of {', '.join(named)}, which has "
                 f"{valid or 'none'}; it is one of {', '.join(owners)}"
             )
 
