@@ -1,7 +1,10 @@
 """View a race in 3D, in a browser or a notebook, by a page that needs no server."""
 
+import base64
 import html
+import importlib.metadata
 import os
+import urllib.parse
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,21 +21,31 @@ from hexapods.shows.scene_spec import race_scene
 from hexapods.shows.show import RunLabel
 from hexapods.trainings import Training
 
+_HEIGHT_PX = 480
 
-@dataclass(frozen=True, repr=False)
+
+@dataclass(repr=False)
 class View:
     """A page that plays a race, as `view` returns it; a notebook shows it by itself.
+
+    Where a notebook lets no scripts run, it shows the picture and a sentence on how to play it.
 
     Attributes:
         title: of the page.
         page: the page, HTML.
+        picture: of the time-out, PNG.
+        description: of the picture, in words.
+        file: where `save` wrote it last; the sentence under the picture links to it.
     """
 
     title: str
     page: str
+    picture: bytes
+    description: str
+    file: Path | None = None
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the page to a file.
+        """Write the page to a file, to which what a notebook shows then links.
 
         Returns:
             the path.
@@ -43,6 +56,7 @@ class View:
         """
         target = path_of(path, "a file")
         write_atomically(target, self.page.encode())
+        self.file = target
         return target
 
     def open(self) -> Path:
@@ -64,8 +78,50 @@ class View:
         return f"<View of {self.title}: {len(self.page) / 1e6:.1f} MB; save(path) or open()>"
 
     def _repr_html_(self) -> str:
-        page = html.escape(self.page)
-        return f'<iframe srcdoc="{page}" width="100%" height="480" style="border:0"></iframe>'
+        # The frame covers the picture, unless it is removed or the page in it may run no scripts.
+        picture = f"data:image/png;base64,{base64.b64encode(self.picture).decode()}"
+        title, page = html.escape(self.title), html.escape(self.page)
+        return (
+            f'<figure style="position:relative; margin:0; min-height:{_HEIGHT_PX}px">'
+            f'<img src="{picture}" alt="{html.escape(self.description)}" style="max-width:100%">'
+            f"<figcaption>{self._how_to_play()}</figcaption>"
+            f'<iframe srcdoc="{page}" title="{title}" sandbox="allow-scripts" width="100%" '
+            f'height="{_HEIGHT_PX}" style="position:absolute; inset:0; border:0"></iframe></figure>'
+        )
+
+    def _repr_png_(self) -> bytes:
+        return self.picture
+
+    def _how_to_play(self) -> str:
+        """Return the sentence under the picture, HTML."""
+        if self.file is None:
+            from_file = 'from the file that <code>hx.view(…).save("race.html")</code> writes'
+        else:
+            link = html.escape(_relative_link(self.file))
+            from_file = f'from the file <a href="{link}">{html.escape(self.file.name)}</a>'
+        documentation = _documentation()
+        more = f' <a href="{html.escape(documentation)}">Documentation</a>' if documentation else ""
+        return (
+            f"It plays where scripts may run: in a notebook that is trusted, and {from_file}.{more}"
+        )
+
+
+def _relative_link(file: Path) -> str:
+    """Return the address of a file from the working folder, which is usually the notebook's."""
+    try:
+        return urllib.parse.quote(Path(os.path.relpath(file)).as_posix())
+    except ValueError:  # Windows: on another drive
+        return file.absolute().as_uri()
+
+
+def _documentation() -> str | None:
+    """Return the address of the documentation, None where no installed package states one."""
+    try:
+        urls = importlib.metadata.metadata("racing-hexapods").get_all("Project-URL") or []
+    except importlib.metadata.PackageNotFoundError:
+        return None
+    pairs = (url.partition(", ") for url in urls)
+    return next((address for name, _, address in pairs if name == "Documentation"), None)
 
 
 def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "paper") -> View:
@@ -90,6 +146,7 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
     # Only here: viser takes longer to import than all else.
     from hexapods.drawing.replay_encoding import encode_frames, encode_scene  # noqa: PLC0415
     from hexapods.exports.replay_page import replay_page  # noqa: PLC0415
+    from hexapods.exports.stage_picture import stage_picture  # noqa: PLC0415
 
     check_clock(clock)
     if title is not None and not isinstance(title, str):
@@ -108,7 +165,7 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
         lambda level, number: encode_frames(replay, replay.segment_times_s(level, number)),
         name,
     )
-    return View(name, b"".join(chunks).decode())
+    return View(name, b"".join(chunks).decode(), *stage_picture(replay))
 
 
 def _title(shown: Race) -> str:

@@ -198,7 +198,7 @@ def test_a_race_that_was_changed_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", [3, "", "a\0", b"q.npz", None])
 def test_an_invalid_path_is_refused(path: Any) -> None:
     race = hx.race(["greedy"], steps=1, simulator="kinematic")
-    for use in (hx.load, race.save, hx.View("", "").save):
+    for use in (hx.load, race.save, hx.View("", "", b"", "").save):
         with pytest.raises(hx.InvalidInput, match=r"given by its path, a text or a Path, not by"):
             use(path)
 

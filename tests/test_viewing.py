@@ -1,8 +1,13 @@
-"""`hx.view`: a race as a page that plays it without a server."""
+"""`hx.view`: a race as a page that plays it without a server, and as a picture of its end."""
 
+import html
+import io
+import os
+import re
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 import hexapods as hx
 
@@ -14,8 +19,27 @@ def test_a_race_is_a_page(tmp_path: Path) -> None:
     assert "<title>A &lt;race&gt;</title>" in page
     assert '"kind": "race"' in page
     assert "default-src 'none'" in page
-    assert 'srcdoc="&lt;!' in view._repr_html_().lower()
+    [srcdoc] = re.findall('srcdoc="([^"]*)"', view._repr_html_())
+    assert html.unescape(srcdoc) == page
     assert repr(view).startswith("<View of A <race>: ")
+
+
+def test_without_scripts_a_notebook_shows_a_picture_and_how_to_play_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    view = hx.view(hx.race(["greedy", "wave"], steps=3, simulator="kinematic"))
+    assert Image.open(io.BytesIO(view._repr_png_())).size == (800, 450)
+    assert view.description.startswith("At the time-out: Greedy 0.0")
+    assert 'hx.view(…).save("race.html")' in view._repr_html_()
+
+    view.save(tmp_path / "my race.html")
+    # What sanitisers leave: neither frames nor styles.
+    left = re.sub("<iframe.*?</iframe>", "", view._repr_html_())
+    assert '<img src="data:image/png;base64,' in left
+    assert f'alt="{view.description}"' in left
+    assert '<a href="my%20race.html">my race.html</a>' in left
+    assert os.path.lexists("my race.html")
 
 
 @pytest.mark.test
@@ -31,7 +55,7 @@ def test_a_browser_opens_a_file_that_the_next_replaces(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path))
     monkeypatch.setattr("webbrowser.open", opened.append)
-    paths = [hx.View(title, f"<p>{title}").open() for title in ("one", "two")]
+    paths = [hx.View(title, f"<p>{title}", b"", "").open() for title in ("one", "two")]
     assert paths[0] == paths[1]
     assert opened == [path.as_uri() for path in paths]
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == paths[:1]

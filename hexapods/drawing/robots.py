@@ -103,11 +103,7 @@ class Robots:
         """Return colours (lanes · links, 3), 0–255, and scales (lanes · links,), 0 if hidden."""
         colors: list[Rgb | None] = []
         for color, conditions in zip(self._lane_colors, self._conditions, strict=True):
-            lane_color = (
-                rgb(color)
-                if part.painted or self._is_ghost
-                else mix(_UNPAINTED, rgb(color), _SHADE)
-            )
+            lane_color = rgb(color) if self._is_ghost else part_color(part, rgb(color))
             if conditions is None:
                 colors += [None] * len(part.links)
             else:
@@ -140,6 +136,11 @@ class _Instances(NamedTuple):
     """(lanes · links, 3) [m]."""
     batched_wxyzs: NDArray[np.float32]
     """Quaternions, (lanes · links, 4)."""
+
+
+def part_color(part: Part, color: Rgb) -> Rgb:
+    """Return the colour of a part of a robot whose agent has a colour."""
+    return color if part.painted else mix(_UNPAINTED, color, _SHADE)
 
 
 def label_text(

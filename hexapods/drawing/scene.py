@@ -77,6 +77,11 @@ class StageScene:
         self._follow_positions = follow_positions
 
 
+def lane_width_m(spec: SceneSpec) -> float:
+    """Return the width of each lane [m], in which a robot has room to step aside."""
+    return 2 * spec.robot.span_m + spec.grid.side_m + 0.08
+
+
 class _RunScene:
     """The part of the scene graph that depends on the run: lanes, robots, labels and grids."""
 
@@ -84,7 +89,7 @@ class _RunScene:
         self.spec = spec
         self._root = server.scene.add_frame(SCENE_ROOT, show_axes=False)
         self._ghost_spec = ghost_spec = spec.ghosts or spec
-        width = max(2 * s.robot.span_m + s.grid.side_m + 0.08 for s in (spec, ghost_spec))
+        width = max(lane_width_m(s) for s in (spec, ghost_spec))
         lane_specs = [*spec.lane_specs, *ghost_spec.lane_specs[len(spec.lane_specs) :]]
         # A training has a last lane for the ghosts of its evaluations.
         lanes = len(lane_specs) + (spec.kind == "training")

@@ -6,7 +6,8 @@
 - `options`: settings of the formats.
 - `recorded_walks`: the recorded steps of each robot, the source of most formats.
 - `trajectory`: joint angles, feet and torques over time, as CSV and Parquet.
-- `replay_page`: a page that replays a run without a server.
+- `replay_page`: a page that replays a run without a server; `stage_picture`: a PNG of a moment of a
+  run, drawn without OpenGL, for where that page may not play.
 - `video`, `video_pictures`: MP4 and GIF, rendered off screen by MuJoCo; `sketch_picture`: a PNG of
   the robot in a file, before it is stored.
 - `mcap_log`: joint states and frames for tools of robots.
