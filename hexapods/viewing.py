@@ -6,12 +6,15 @@ import importlib.metadata
 import os
 import urllib.parse
 import webbrowser
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import platformdirs
 
 from hexapods.domain.errors import InvalidInput
+from hexapods.exports.export_format import EncodedReplay, StagePicture
 from hexapods.files import path_of, write_atomically
 from hexapods.races import Race, race
 from hexapods.runs.clocks import Clock, check_clock
@@ -124,13 +127,16 @@ def _documentation() -> str | None:
     return next((address for name, _, address in pairs if name == "Documentation"), None)
 
 
-def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "paper") -> View:
+def view(
+    shown: Race | Training, *, title: str | None = None, clock: Clock | Sequence[Clock] = "paper"
+) -> View:
     """Return a page that plays a race in 3D, in any browser and without a server.
 
     Args:
         shown: a race, or a training, which walks 50 steps alone.
         title: of the page; the names of the agents by default.
-        clock: times the race: `paper`, `wall` or `free`.
+        clock: times the race: `paper`, `wall` or `free`; of several the page begins with the first,
+            and offers a choice.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
@@ -139,33 +145,50 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
     Examples:
         >>> import hexapods as hx
         >>> race = hx.race(["greedy", "wave"], simulator="kinematic", steps=6)
-        >>> page = hx.view(race, title="Greedy and Wave")
+        >>> page = hx.view(race, title="Greedy and Wave", clock=["paper", "free"])
         >>> page.save("race.html").exists()
         True
     """
     # Only here: viser takes longer to import than all else.
-    from hexapods.drawing.replay_encoding import encode_frames, encode_scene  # noqa: PLC0415
     from hexapods.exports.replay_page import replay_page  # noqa: PLC0415
     from hexapods.exports.stage_picture import stage_picture  # noqa: PLC0415
 
-    check_clock(clock)
+    clocks = [clock] if isinstance(clock, str) else [*clock]
+    if not clocks:
+        raise InvalidInput("clock is paper, wall or free, or several of them, not none")
+    for name in clocks:
+        check_clock(name)
     if title is not None and not isinstance(title, str):
         raise InvalidInput(f"title is a text, not {title!r}")
     if not isinstance(shown, Race | Training):
         raise InvalidInput(f"what can be viewed is a race or a training, not {shown!r}")
     shown_race = race([shown]) if isinstance(shown, Training) else shown
-    config = shown_race.config
-    scene, name = race_scene(config), title or _title(shown_race)
-    show = RaceShow(scene, config.steps, clock, lambda: shown_race.recording, world=config.world)
-    replay = Replay(show, RunLabel(None, name, replay=True))
+    title = title or _title(shown_race)
+    replays = [_replay(shown_race, title, name) for name in dict.fromkeys(clocks)]
+    picture = stage_picture(replays[0])
+    encoded = [_encoded(replay, picture) for replay in replays]
+    return View(title, b"".join(replay_page(encoded, title)).decode(), *picture)
+
+
+def _replay(shown: Race, title: str, clock: Clock) -> Replay:
+    config = shown.config
+    scene = race_scene(config)
+    show = RaceShow(scene, config.steps, clock, lambda: shown.recording, world=config.world)
+    replay = Replay(show, RunLabel(None, title, replay=True))
     show.advance(0.0, None, run_ended=True)
-    chunks = replay_page(
+    return replay
+
+
+def _encoded(replay: Replay, picture: StagePicture) -> EncodedReplay:
+    from hexapods.drawing.replay_encoding import encode_frames, encode_scene  # noqa: PLC0415
+
+    return EncodedReplay(
         replay.plan(),
         lambda: encode_scene(replay),
-        lambda level, number: encode_frames(replay, replay.segment_times_s(level, number)),
-        name,
+        # The page asks twice: for the size, and to write it.
+        cache(lambda level, number: encode_frames(replay, replay.segment_times_s(level, number))),
+        lambda: picture,
     )
-    return View(name, b"".join(chunks).decode(), *stage_picture(replay))
 
 
 def _title(shown: Race) -> str:

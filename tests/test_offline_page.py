@@ -3,6 +3,7 @@
 import base64
 import json
 import math
+import posixpath
 import re
 
 import pytest
@@ -29,12 +30,19 @@ def modules_of(entry: str) -> dict[str, str]:
 
 def test_the_player_and_its_imports_are_those_of_the_page() -> None:
     modules = modules_of(PLAYER)
+    own = {path.name for path in (assets.static_dir() / "js/offline").iterdir()}
 
-    assert set(modules) == {PLAYER, "js/replay-frames.js", "js/format.js"}
+    assert set(modules) == {f"js/offline/{name}" for name in own} | {
+        "js/replay-frames.js",
+        "js/format.js",
+    }
     for name, text in modules.items():
         source = (assets.static_dir() / name).read_text("utf-8")
-        source = source.replace('"../replay-frames.js";', '"js/replay-frames.js";')
-        assert text == source.replace('"./format.js";', '"js/format.js";')
+        folder = posixpath.dirname(name)
+        source = re.sub(r'^(import .* from) "\.\./', r'\1 "js/', source, flags=re.MULTILINE)
+        assert text == re.sub(
+            r'^(import .* from) "\./', rf'\1 "{folder}/', source, flags=re.MULTILINE
+        )
 
 
 @pytest.mark.parametrize("entry", [PLAYER, REPORT])

@@ -13,6 +13,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import Cells
 from hexapods.drawing.replay_encoding import encode_frames, encode_posture, encode_scene
 from hexapods.exports.export_format import EncodedReplay
+from hexapods.exports.stage_picture import stage_picture
 from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import NoSuchSegment, Replay, ReplayView, interval_s
 from hexapods.shows.show import IdleShow, RunLabel
@@ -195,6 +196,7 @@ class ReplayFrames:
             self.plan(run_id, clock),
             lambda: self.scene(run_id),
             lambda level, number: self.segment(run_id, clock, level, number).data,
+            lambda: stage_picture(self._replays.get(run_id, clock)),
         )
 
     def _encoded_once(self, key: Hashable, encode: Callable[[], bytes]) -> bytes:

@@ -27,6 +27,14 @@ WriteFile = Callable[[Callable[[Path], None], str], bytes]
 """Calls a function that writes a file, which has a given name, and returns the file's content."""
 
 
+class StagePicture(NamedTuple):
+    """A picture of a moment of a run, as `hexapods.exports.stage_picture` draws it."""
+
+    png: bytes
+    description: str
+    """The moment, names and distances, for who does not see it."""
+
+
 class EncodedReplay(NamedTuple):
     """The encoded frames of a run; `hexapods.drawing.replay_encoding` has their form."""
 
@@ -34,6 +42,8 @@ class EncodedReplay(NamedTuple):
     scene: Callable[[], bytes]
     segment: Callable[[int, int], bytes]
     """Returns a segment, by its level and number."""
+    picture: Callable[[], StagePicture]
+    """Returns a picture of the end of the run."""
 
 
 @dataclass(frozen=True)

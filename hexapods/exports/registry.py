@@ -29,9 +29,14 @@ def _page(
     source: ExportSource, file: FileType, options: ClockOptions, execution: Execution
 ) -> Iterable[bytes]:
     from hexapods.exports.replay_page import replay_page  # noqa: PLC0415
+    from hexapods.runs.clocks import CLOCKS  # noqa: PLC0415
 
     del file, execution  # `replay_page` has its own limit, and encoding a frame checks by itself
-    return replay_page(*source.replay(options.clock), source.title)
+    replays = [source.replay(options.clock)]
+    if replays[0].plan.kind == "race":
+        others = (clock for clock in CLOCKS if clock != options.clock)
+        replays += [source.replay(clock) for clock in others]
+    return replay_page(replays, source.title)
 
 
 def _video(

@@ -22,6 +22,7 @@ from hexapods.drawing.lane_marks import BEFORE_M, BEYOND_M
 from hexapods.drawing.robot_mesh import RobotMesh, antenna_m
 from hexapods.drawing.robots import part_color
 from hexapods.drawing.scene import lane_width_m
+from hexapods.exports.export_format import StagePicture
 from hexapods.runs.clocks import FINISH_LINE_M
 from hexapods.shows.replay import Replay
 from hexapods.shows.stage_frame import StageFrame
@@ -49,14 +50,6 @@ _TEXT = (20, 24, 31)
 _DASHES = "−–—‐‑"
 _COLORS = 192
 """Colours of the file; flat areas in few of them take a third of the bytes."""
-
-
-class StagePicture(NamedTuple):
-    """A picture of a moment of a run."""
-
-    png: bytes
-    description: str
-    """The moment, names and distances, for who does not see it."""
 
 
 def stage_picture(replay: Replay) -> StagePicture:

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +25,7 @@ from hexapods.exports.replay_page import (
     replay_page,
 )
 from hexapods.offline_page import import_map
+from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
 from tests.drawing.replay_decoding import decoded
 from tests.stage.stage_parts import StageParts
@@ -33,9 +35,14 @@ PLAYER = "js/offline/player.js"
 _BLOCK = re.compile(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>')
 
 
-def page_of(frames: ReplayFrames, run_id: str, max_bytes: int = MAX_BYTES) -> str:
-    encoded = frames.encoded(run_id, "paper")
-    return b"".join(replay_page(*encoded, "A <race> & more", max_bytes)).decode()
+def page_of(
+    frames: ReplayFrames,
+    run_id: str,
+    max_bytes: int = MAX_BYTES,
+    clocks: Sequence[Clock] = ("paper",),
+) -> str:
+    replays = [frames.encoded(run_id, clock) for clock in clocks]
+    return b"".join(replay_page(replays, "A <race> & more", max_bytes)).decode()
 
 
 def blocks_of(page: str) -> dict[str, str]:
@@ -45,18 +52,23 @@ def blocks_of(page: str) -> dict[str, str]:
 def test_frames_of_the_page_are_the_joint_positions_that_were_simulated(parts: StageParts) -> None:
     run = parts.finished_race(LANES)
     replay = Replays(parts.store, parts.recordings).get(run.id, "paper")
-    page = page_of(frames_of(parts), run.id)
+    page = page_of(frames_of(parts), run.id, clocks=("paper", "free"))
     blocks = blocks_of(page)
     about = json.loads(blocks["replay"])
     mesh = RobotMesh(replay.show.spec.robot)
 
     assert about["level"] == 0
-    assert about["notes"] == ["Times: paper clock."]
-    end_s = about["recorded_s"][-1][1]
-    numbers = range(int(end_s * FRAMES_PER_S / SEGMENT_FRAMES) + 1)
-    assert list(blocks) == ["replay", "scene", *(f"segment-{number}" for number in numbers)]
-    for number in numbers:
-        segment, arrays = decoded(base64.b64decode(blocks[f"segment-{number}"]))
+    assert about["notes"] == []
+    assert [plan["clock"] for plan in about["plans"]] == ["paper", "free"]
+    names = []
+    for plan in about["plans"]:
+        end_s = plan["recorded_s"][-1][1]
+        count = int(end_s * FRAMES_PER_S / SEGMENT_FRAMES) + 1
+        names += [f"segment-{plan['clock']}-{number}" for number in range(count)]
+    assert list(blocks) == ["viewer", "replay", "scene", *names]
+    end_s = about["plans"][0]["recorded_s"][-1][1]
+    for name in (name for name in names if "paper" in name):
+        segment, arrays = decoded(base64.b64decode(blocks[name]))
         time_s = segment["frames"][-1]["time_s"]
         state = shown(segment["frames"], arrays)
         moved = f"{SCENE_ROOT}/robots/{mesh.part_name(0)} batched_positions"
@@ -75,9 +87,9 @@ def test_the_page_has_its_modules_and_its_title_as_text(parts: StageParts) -> No
 
     assert "<title>A &lt;race&gt; &amp; more</title>" in page
     assert "A <race>" not in page
-    assert f'<script type="importmap">{import_map(PLAYER)}</script>' in page
     ((nonce, code),) = re.findall(r'<script type="module" nonce="([^"]+)">(.*?)</script>', page)
     assert code == f'import "{PLAYER}";'
+    assert f'<script type="importmap" nonce="{nonce}">{import_map(PLAYER)}</script>' in page
     policy = page.split("</head>")[0].split("<script")[0]
     assert f"'nonce-{nonce}'" in policy
     assert "frame-ancestors" not in policy
@@ -97,6 +109,19 @@ def test_a_page_that_would_be_too_large_has_fewer_frames(parts: StageParts) -> N
     assert "pictures a second of the run's time" in about["notes"][0]
     with pytest.raises(TooLong, match="the race is too long for a page of"):
         page_of(frames, run.id, max_bytes=100_000)
+
+
+def test_another_clock_that_does_not_fit_is_left_out(parts: StageParts) -> None:
+    run, frames = parts.finished_race(LANES, steps=3), frames_of(parts)
+    both = page_of(frames, run.id, clocks=("paper", "free"))
+    fitting = page_of(frames, run.id, len(both.encode()) - 1000, clocks=("paper", "free"))
+
+    plans = [json.loads(blocks_of(page)["replay"])["plans"] for page in (both, fitting)]
+    assert [[plan["clock"] for plan in of_page] for of_page in plans] == [
+        ["paper", "free"],
+        ["paper"],
+    ]
+    assert "segment-free-0" not in blocks_of(fitting)
 
 
 def test_a_long_practice_has_the_segments_of_its_recorded_steps(parts: StageParts) -> None:

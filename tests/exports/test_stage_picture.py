@@ -9,7 +9,8 @@ from PIL import Image
 
 from app.stage.playback import Replays
 from hexapods.drawing.colormap import rgb
-from hexapods.exports.stage_picture import StagePicture, in_ascii, stage_picture
+from hexapods.exports.export_format import StagePicture
+from hexapods.exports.stage_picture import in_ascii, stage_picture
 from tests.stage.stage_parts import StageParts
 
 

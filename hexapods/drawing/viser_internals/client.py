@@ -22,6 +22,7 @@ from hexapods import assets
 
 OFFLINE_SCRIPTS = (
     "client.js",
+    "framed.js",
     "robots.js",
     "shots.js",
     "camera.js",
@@ -29,7 +30,7 @@ OFFLINE_SCRIPTS = (
     "shadows.js",
     "labels.js",
 )
-"""The scripts of a page that is a file."""
+"""The scripts of the client in a page that is a file, which has it in a frame."""
 _HEAD = "<head>"
 _TITLE = "<title>Viser</title>"
 _SCRIPT = re.compile(r"<script(?P<attributes>[^>]*)>(?P<body>.*?)</script>", re.DOTALL)
