@@ -14,6 +14,7 @@ from starlette.routing import Route
 from hexapods.drawing.viser_internals.client import content_policy, patched_page
 
 STAGE_SCRIPTS = (
+    "context.js",
     "client.js",
     "patch.js",
     "robots.js",

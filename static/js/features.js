@@ -218,6 +218,10 @@ export async function withStyle(path, module) {
   return module;
 }
 
+/** The plan of the track, in place of the 3D view. */
+export const loadPlan = () =>
+  withStyle("style/plan.css", import("./components/plan.js")).then(({ Plan }) => Plan);
+
 // ---- what features add, drawn where the core has a place for it; loaded when it is first seen
 
 /** Load a part of a feature, with its style. @param {LoadedPart & { feature: string }} part */

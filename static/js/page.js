@@ -91,6 +91,9 @@ export const drawHere = signal(/** @type {((messages: Message[]) => void) | null
 /** The last click on a foot grid, until it is answered. @type {Signal<Click | null>} */
 export const clickedCell = signal(null);
 
+/** Whether there is no 3D view, by its status (viewer/context.js): never, or no more. @param {string} status */
+export const isFlat = (status) => status === "flat" || status === "gone";
+
 // ---- the camera: it is directed (viewer/camera.js), until the viewer takes it by hand, or lets it go
 
 /** The target at which the viewer took the camera; null while nobody has. @type {Signal<string | null>} */

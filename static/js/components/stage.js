@@ -5,8 +5,8 @@ import { form } from "../form.js";
 import { inMillimetres, tenths } from "../format.js";
 import { narrative } from "../headline.js";
 import {
-  aim, clickedCell, clickedNode, closeLegs, directions, drawHere, inspection, isProjected, isStill, isTaken, legPoints,
-  legsAreOpen, legsOf, picked, places, shownTheme, takeCamera, turnedByHand,
+  aim, clickedCell, clickedNode, closeLegs, directions, drawHere, inspection, isFlat, isProjected, isStill, isTaken,
+  legPoints, legsAreOpen, legsOf, picked, places, shownTheme, takeCamera, turnedByHand,
 } from "../page.js";
 import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, isOwn, plan, playback, replayProblem } from "../player.js";
@@ -15,7 +15,7 @@ import { agentOf } from "../settings.js";
 import { isAway, scene } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html } from "./elements.js";
-import { Loaded, Slot } from "../features.js";
+import { Loaded, loadPlan, Slot } from "../features.js";
 
 /** @import { Message } from "../replay-frames.js" */
 
@@ -38,8 +38,8 @@ export function Stage() {
   useFrame(frame, setStatus, setDrawn);
   useEffect(() => {
     if (status === "loading" || isDrawn) return undefined;
-    const timer = setTimeout(() => setDrawn(true), STATUS_TIMEOUT_MS);
-    return () => clearTimeout(timer);
+    if (status === "lost") return giveUpAfter(() => setStatus("gone"));
+    return giveUpAfter(() => setDrawn(true));
   }, [status, isDrawn]);
   // What was picked is of the run that was shown.
   useEffect(() => closeLegs, [scene.value?.run_id]);
@@ -57,12 +57,18 @@ export function Stage() {
     frame.current?.contentWindow?.postMessage(message, location.origin);
   }, [status, inspection.value]);
 
+  const retry = () => {
+    setDrawn(false);
+    setStatus("loading");
+  };
   const awayWords = awayInWords();
   return html`
     <section class=${`stage ${awayWords && !isReplayed() ? "away" : ""}`} aria-label="Stage" data-status=${status}>
       <div class="picture">
-        <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
-        ${!isDrawn && html`<${StagePlaceholder} />`}
+        ${isFlat(status)
+          ? html`<${Loaded} name="plan" load=${loadPlan} isLost=${status === "gone"} retry=${retry} />`
+          : html`<iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>`}
+        ${!isDrawn && !isFlat(status) && html`<${StagePlaceholder} isLost=${status === "lost"} />`}
         ${isStill.value ? html`<${Slot} name="over a still scene" />` : html`<${OverThePlayed} />`}
         ${awayWords && html`
           <p class="away-note" role="status"><span class="spinner" aria-hidden="true"></span>${awayWords}</p>
@@ -70,6 +76,12 @@ export function Stage() {
       </div>
     </section>
   `;
+}
+
+/** @param {() => void} act */
+function giveUpAfter(act) {
+  const timer = setTimeout(act, STATUS_TIMEOUT_MS);
+  return () => clearTimeout(timer);
 }
 
 /** What lies over the picture of a run. */
@@ -134,6 +146,8 @@ function useFrame(frame, setStatus, setDrawn) {
           return;
         }
         setStatus(status);
+        if (status === "lost") setDrawn(false);
+        if (status !== "connected") return;
         drawIn(send);
         drawHere.value = (messages) => send(messages);
       },
@@ -188,7 +202,8 @@ const Robot = ({ x, color }) => html`
   </g>
 `;
 
-function StagePlaceholder() {
+/** @param {{ isLost: boolean }} props */
+function StagePlaceholder({ isLost }) {
   const robots = form.value.lanes.slice(0, LANES_X.length);
   return html`
     <div class="placeholder">
@@ -200,7 +215,7 @@ function StagePlaceholder() {
           ${robots.map((agent, lane) => html`<${Robot} x=${LANES_X[lane]} color=${agentOf(agent).color} />`)}
         </g>
       </svg>
-      <p>Loading the picture…</p>
+      <p>${isLost ? "The 3D graphics were interrupted. The picture comes again…" : "Loading the picture…"}</p>
     </div>
   `;
 }

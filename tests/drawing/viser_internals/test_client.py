@@ -170,11 +170,11 @@ def test_packed_style_is_not_part_of_the_hash() -> None:
     assert content_policy(page_of("α()", "b { --β: 1 }")) == content_policy(page_of("α()"))
 
 
-def test_installed_client_has_thirteen_scripts_and_all_are_hashed() -> None:
+def test_installed_client_has_fourteen_scripts_and_all_are_hashed() -> None:
     headers = ViewerPage().response({}).headers
     policy = headers["content-security-policy"]
 
-    assert len(hashes(policy)) == 13
+    assert len(hashes(policy)) == 14
     script_source = policy.partition("script-src")[2].partition(";")[0]
     for word in ("'unsafe-inline'", "'unsafe-eval'", "'self'", "http"):
         assert word not in script_source

@@ -3,8 +3,9 @@ import { computed, effect, signal, untracked } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { noteWatched } from "../api.js";
 import { html, Icon } from "../../../js/components/elements.js";
+import { Loaded, loadPlan } from "../../../js/features.js";
 import { page } from "../../../js/page-state.js";
-import { aim, directions, isTaken, shownTheme, takeCamera } from "../../../js/page.js";
+import { aim, directions, isFlat, isTaken, shownTheme, takeCamera } from "../../../js/page.js";
 import { isShownToEnd } from "../../../js/narrative/moment.js";
 import { connection, isAway, scene } from "../../../js/store.js";
 import {
@@ -55,6 +56,8 @@ function followOwnRun() {
 const LABEL_EM = 0.75;
 /** Size of the type around this page's frame, if it is in one [px]; null else. @type {Signal<number | null>} */
 export const typeAround = signal(null);
+/** After so long without 3D graphics there is a plan of the track. */
+const GONE_MS = 12_000;
 const emPx = () => typeAround.peek() ?? parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 /** Colours of the lanes in the picture, as a text, which stays the same while the robots walk. */
@@ -78,6 +81,11 @@ export function Picture({ isProjected = false }) {
     addEventListener("message", onMessage);
     return () => removeEventListener("message", onMessage);
   }, []);
+  useEffect(() => {
+    if (status !== "lost") return undefined;
+    const timer = setTimeout(() => setStatus("gone"), GONE_MS);
+    return () => clearTimeout(timer);
+  }, [status]);
   const [lanes, names] = [colours.value, laneNames.value];
   useEffect(() => {
     const show = () => frame.current?.contentWindow?.postMessage({
@@ -90,11 +98,17 @@ export function Picture({ isProjected = false }) {
   }, [shownTheme.value, status, lanes, names, directions.value, typeAround.value]);
   return html`
     <div class="room-picture" data-status=${status}>
-      <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>
+      ${isFlat(status)
+        ? html`<${Loaded} name="plan" load=${loadPlan} isLost=${status === "gone"} names=${names.split("\n")}
+            retry=${() => setStatus("loading")} />`
+        : html`<iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>`}
       ${isTaken.value && html`
         <button class="secondary compact directed-camera" onClick=${() => aim("directed")}>Directed camera</button>
       `}
       ${status === "loading" && html`<p class="over" role="status">The robot walks to the start line…</p>`}
+      ${status === "lost" && html`
+        <p class="over" role="status">The 3D graphics were interrupted. The picture comes again…</p>
+      `}
     </div>
   `;
 }
