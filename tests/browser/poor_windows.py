@@ -79,6 +79,37 @@ _WITHOUT_FOCUS = """([scope, controls]) => {
     focused?.focus();
     return without;
 }"""
+# Behind text the browser paints a plate of the page's ground, on which text in a colour for another
+# ground is not seen; unless the element keeps its colours.
+_LOST_BY_FORCED_COLORS = """([scope]) => {
+    const probe = document.body.appendChild(document.createElement("i"));
+    const resolve = color => {
+        probe.style.backgroundColor = color;
+        return getComputedStyle(probe).backgroundColor;
+    };
+    const grounds = ["Canvas", "ButtonFace", "Field"].map(resolve);
+    const groundOf = one => getComputedStyle(one).backgroundColor;
+    const hasNone = one => /^rgba\\(.*, 0\\)$/.test(groundOf(one));
+    const isShown = one => one.checkVisibility({visibilityProperty: true, opacityProperty: true});
+    const describe = one => one.outerHTML.replace(/\\s+/g, " ").slice(0, 110);
+    const problems = [];
+    for (const one of document.querySelector(scope).querySelectorAll("*")) {
+        if (one.closest("svg, .sr-only, iframe") || !isShown(one)) continue;
+        const {forcedColorAdjust} = getComputedStyle(one);
+        if ([...one.childNodes].some(node => node.nodeType === 3 && node.textContent.trim())) {
+            let around = one;
+            while (around && hasNone(around)) around = around.parentElement;
+            const ground = around ? groundOf(around) : grounds[0];
+            if (forcedColorAdjust !== "none" && !grounds.includes(ground))
+                problems.push(`text on a plate over ${ground}: ${describe(one)}`);
+        }
+        if (one.matches("[aria-pressed=true], [aria-selected=true], a[aria-current]")
+            && (hasNone(one) || grounds.includes(groundOf(one))))
+            problems.push(`is not seen to be chosen: ${describe(one)}`);
+    }
+    probe.remove();
+    return problems;
+}"""
 _STILL_MOVING = """() => document.getAnimations()
     .filter(({playState}) => playState === "running")
     .map(({effect}) => effect.target.outerHTML.slice(0, 110))"""
@@ -114,5 +145,6 @@ def problems_in(page: Page, window: PoorWindow, scope: str = "body") -> list[str
     if window.has_forced_colors:
         unseen: list[str] = page.evaluate(_WITHOUT_FOCUS, [scope, _CONTROLS])
         problems += [f"focus is not seen: {control}" for control in unseen]
+        problems += page.evaluate(_LOST_BY_FORCED_COLORS, [scope])
     moving: list[str] = page.evaluate(_STILL_MOVING)
     return problems + [f"moves: {element}" for element in moving]
