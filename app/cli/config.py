@@ -43,8 +43,8 @@ def config(*, as_json: AsJson = False) -> int:
     settings = [*_settings(configuration, added)]
     options = [*_options(configuration)]
     if as_json:
-        given = {"settings": settings, "options": options}
-        shown = {key: [row._asdict() for row in rows] for key, rows in given.items()}
+        rows_of = {"settings": settings, "options": options}
+        shown = {key: [row._asdict() for row in rows] for key, rows in rows_of.items()}
         print(json.dumps({"file": configuration.file, **shown}))
         return 0
     file = configuration.file
