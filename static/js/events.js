@@ -1,6 +1,6 @@
 // The stream of server-sent events: opened again after every break, and made up for by asking for snapshots where it
 // does not come through. And the server's clock, by the time stamps of what it sends.
-import { effect, untracked } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 
 // ---- the server's clock
 
@@ -45,6 +45,13 @@ const LONGEST_WAIT_MS = 8000;
 const FIRST_SILENCE_MS = 4000;
 const LONGEST_SILENCE_MS = 25_000;
 const POLL_MS = 2000;
+/** How often it is looked whether the page has slept; nothing heard for so long is no pause of the server's. */
+const [BEAT_MS, GAP_MS] = [1000, 15_000];
+/** A stream that is held back is tried so seldom, as the server goes on to write into it. */
+const LONGEST_HELD_BACK_MS = 60_000;
+
+/** Whether streams do not come through the network, though answers do: the page asks every POLL_MS. */
+export const isPolling = signal(false);
 
 /** @typedef {"connecting" | "live" | "reconnecting"} Connection */
 /** @typedef {ReturnType<typeof setTimeout> | undefined} Timer */
@@ -76,13 +83,17 @@ class Stream {
     this.polls = 0;
     this.isPolling = false;
     this.isLive = false;
+    /** Whether the newest stream has brought nothing at all. */
+    this.isMute = false;
+    /** When something was heard last, by the clock that goes on while a machine sleeps [ms]. */
+    this.heardAt = Date.now();
   }
 
   open() {
     this.close();
     const source = new EventSource(this.address);
     this.source = source;
-    this.expectWithin(FIRST_SILENCE_MS);
+    this.expectWithin(FIRST_SILENCE_MS, true);
     for (const name of this.names) {
       source.addEventListener(name, ({ data }) => {
         if (source === this.source) this.take(name, JSON.parse(data));
@@ -94,7 +105,14 @@ class Stream {
 
   /** @param {string} name @param {any} data */
   take(name, data) {
-    this.expectWithin(LONGEST_SILENCE_MS);
+    // What comes after a sleep was sent before it, or while the page could not hear.
+    if (name !== "snapshot" && this.hasGap()) {
+      this.renew();
+      return;
+    }
+    this.heardAt = Date.now();
+    this.isMute = false;
+    this.expectWithin(LONGEST_SILENCE_MS, false);
     this.onEvent(name, data, this.isLive);
     if (name !== "snapshot") return;
     this.wait_ms = FIRST_WAIT_MS;
@@ -105,13 +123,32 @@ class Stream {
   /** @param {boolean} isLive */
   tell(isLive) {
     this.isLive = isLive;
+    isPolling.value = isLive && this.isMute;
     this.onState(isLive ? "live" : "reconnecting");
   }
 
-  /** Give the stream up where it brings nothing for so long. @param {number} most_ms */
-  expectWithin(most_ms) {
+  /** Give the stream up where it brings nothing for so long. @param {number} most_ms @param {boolean} isMute */
+  expectWithin(most_ms, isMute) {
     clearTimeout(this.timers.silence);
-    this.timers.silence = setTimeout(() => this.lose(), most_ms);
+    this.timers.silence = setTimeout(() => {
+      this.isMute = isMute;
+      this.lose();
+    }, most_ms);
+  }
+
+  /** Whether nothing was heard for longer than a server is silent. */
+  hasGap() {
+    return Date.now() - this.heardAt > GAP_MS;
+  }
+
+  /** Open the stream at once, and ask for what it would begin with: the page has slept, or the network is another. */
+  renew() {
+    this.heardAt = Date.now();
+    this.wait_ms = FIRST_WAIT_MS;
+    this.tell(false);
+    this.open();
+    clearTimeout(this.timers.polling);
+    this.poll();
   }
 
   close() {
@@ -124,7 +161,7 @@ class Stream {
   lose() {
     this.close();
     this.timers.opening = setTimeout(() => this.open(), this.wait_ms);
-    this.wait_ms = Math.min(2 * this.wait_ms, LONGEST_WAIT_MS);
+    this.wait_ms = Math.min(2 * this.wait_ms, this.isMute ? LONGEST_HELD_BACK_MS : LONGEST_WAIT_MS);
     if (!this.isPolling) this.poll();
   }
 
@@ -135,7 +172,10 @@ class Stream {
     const data = await read(this.snapshot);
     if (number !== this.polls) return;
     this.timers.polling = setTimeout(() => this.poll(), POLL_MS);
-    if (data !== null) this.onEvent("snapshot", data, this.isLive);
+    if (data !== null) {
+      this.heardAt = Date.now();
+      this.onEvent("snapshot", data, this.isLive);
+    }
     this.tell(data !== null);
   }
 
@@ -164,15 +204,25 @@ export function openEvents(names, onEvent, onState, addresses) {
     untracked(() => stream.open());
   });
   let isOver = false;
-  const openNow = () => {
-    if (!isOver && stream.source === null) stream.open();
+  const renew = () => isOver || stream.renew();
+  const wake = () => {
+    const isLost = stream.source === null && !stream.isLive;
+    if (!document.hidden && (isLost || stream.hasGap())) renew();
   };
-  addEventListener("online", openNow);
-  document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) openNow();
-  });
+  addEventListener("online", renew);
+  addEventListener("pageshow", wake);
+  document.addEventListener("resume", wake);
+  document.addEventListener("visibilitychange", wake);
+  // A machine that sleeps with the page in view tells nothing of it.
+  let beatAt = Date.now();
+  const beat = setInterval(() => {
+    const before = beatAt;
+    beatAt = Date.now();
+    if (beatAt - before > GAP_MS) wake();
+  }, BEAT_MS);
   return () => {
     isOver = true;
+    clearInterval(beat);
     stop();
     stream.close();
     stream.stopPolling();

@@ -275,6 +275,11 @@ export class Picture {
     this.editionOf(clock, version).put({ ...piece, isSegment: false });
   }
 
+  /** Request at once what lacks: what the stage has pushed was not heard. */
+  expectNothing() {
+    this.isPushed = false;
+  }
+
   /** Take a moment that the stage has pushed. @type {(clock: Clock, version: string, exact: Exact) => void} */
   putMoment(clock, version, exact) {
     this.isPushed = true;

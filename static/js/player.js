@@ -315,7 +315,8 @@ function takePosition({ time_s, rate }, isHere, now) {
 
 /** Of what the page was told last: the figures, their time, how they are played, and how far that can go. */
 let told = /** @type {unknown[]} */ ([]);
-let toldAt = -Infinity;
+/** When that was, and when the plan was requested last [ms]. */
+let [toldAt, grewAt] = [-Infinity, -Infinity];
 
 /** Let the page know the moment: at once where it is held or something has changed. */
 /** @type {(wanted: Wanted, now: number) => void} */
@@ -331,8 +332,6 @@ function tell({ rate, end_s }, now) {
   [told, toldAt] = [state, now];
   scene.value = sceneOf(/** @type {Scene} */ (figures), how, { ...known, time_s, rate, isOwn: isOwn.peek() });
 }
-
-let grewAt = -Infinity;
 
 /** Near its end, request the plan of a run that has computed more since. */
 async function grow(/** @type {number} */ now) {
@@ -373,12 +372,13 @@ export function followPlayer({ ofStage = () => true } = {}) {
     const head = playhead.value;
     if (head && !isOwn.value) position.value = stagePosition();
   });
-  // A server that was away may have come back with the run.
+  // A server that was away may have come back with the run; what it has pushed meanwhile comes no more.
   let wasAway = false;
   effect(() => {
     wasAway ||= connection.value === "reconnecting";
     if (connection.value !== "live" || !wasAway) return;
     wasAway = false;
+    picture?.expectNothing();
     if (replayProblem.peek() && isOwn.peek()) load(page.moment.peek() ?? 0);
   });
   effect(() => {

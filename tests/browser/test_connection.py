@@ -141,6 +141,8 @@ def test_where_streams_are_held_back_the_stage_is_followed_all_the_same(
         expect(shown).to_contain_text(re.compile(r"^Race: Greedy.*step \d+ of 30$"))
         expect(dashboard.connection).to_contain_text("connected")
         expect(page.get_by_text("Reconnecting")).to_have_count(0)
+        said = page.get_by_text("This network holds live updates back: asking every 2 s")
+        expect(said).to_be_visible()
         # A command reaches the page within a few seconds.
         api.put("stage", json={"time_s": 1.0, "playing": False}).raise_for_status()
         expect(dashboard.moment).to_have_value("1")

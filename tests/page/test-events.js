@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { afterEach, beforeEach, mock, test } from "node:test";
 import { signal } from "@preact/signals";
-import { openEvents, ServerClock } from "../../static/js/events.js";
+import { isPolling, openEvents, ServerClock } from "../../static/js/events.js";
 
 // ---- the clock
 
@@ -72,10 +72,17 @@ globalThis.fetch = (url) => {
 };
 /** @type {() => void} */
 let close = () => {};
+/** What the page does when the browser tells something, by its name. @type {Map<string, () => void>} */
+const listeners = new Map();
+for (const target of [globalThis, globalThis.document]) {
+  Object.assign(target, {
+    addEventListener: (/** @type {string} */ type, /** @type {() => void} */ act) => listeners.set(type, act),
+  });
+}
 const newest = () => sources[sources.length - 1];
 
 beforeEach(() => {
-  mock.timers.enable({ apis: ["setTimeout"] });
+  mock.timers.enable({ apis: ["setTimeout", "setInterval", "Date"] });
   [sources, told, polls, polled] = [[], [], [], null];
   address.value = "http://page.test/api/v1/events?picture=true";
   const onEvent = (/** @type {string} */ name, /** @type {any} */ _, /** @type {boolean} */ isContinued) =>
@@ -90,19 +97,24 @@ afterEach(() => {
 
 /** Let time pass, and answers come. @param {number} ms */
 async function pass(ms) {
-  mock.timers.tick(ms);
-  for (let n = 0; n < 5; n += 1) {
-    await new Promise((resolve) => {
-      setImmediate(resolve);
-    });
+  for (let left = ms; left >= 0; left -= 500) {
+    mock.timers.tick(Math.min(left, 500));
+    for (let n = 0; n < 3; n += 1) {
+      await new Promise((resolve) => {
+        setImmediate(resolve);
+      });
+    }
   }
 }
 
+/** The page sleeps: time passes, and its timers do not. @param {number} ms */
+const sleep = (ms) => mock.timers.setTime(Date.now() + ms);
+
 test("the connection is live with the first snapshot, and stays so while anything comes", async () => {
   newest().send("snapshot");
-  await pass(20_000);
+  await pass(14_000);
   newest().send("clock");
-  await pass(20_000);
+  await pass(14_000);
   assert.deepEqual(told, ["connecting", "snapshot", "live", "clock"]);
   assert.deepEqual([sources.length, polls], [1, []]);
 });
@@ -128,8 +140,54 @@ test("a stream that brings nothing is made up for by snapshots: a proxy may hold
   polled = { stage: null };
   await pass(4000);
   assert.deepEqual(told, ["connecting", "snapshot", "live"]);
+  assert.ok(isPolling.value, "which is said");
   await pass(2000);
   assert.deepEqual(told.slice(3), ["snapshot+", "live"]);
+  await pass(200_000);
+  assert.ok(sources.length < 12, "as the server writes into what is held back, it is tried more and more seldom");
+  assert.equal(told.at(-1), "live");
+  for (let s = 0; newest().isClosed && s < 60; s += 1) await pass(1000);
+  newest().send("snapshot");
+  assert.equal(isPolling.value, false);
+});
+
+for (const type of ["visibilitychange", "resume", "pageshow"]) {
+  test(`after a sleep it is connected anew and asked for news at once, by ${type}`, async () => {
+    newest().send("snapshot");
+    polled = { stage: null };
+    const [stale] = sources;
+    sleep(75_000);
+    listeners.get(type)?.();
+    await pass(0);
+    assert.deepEqual([stale.isClosed, sources.length, polls.length], [true, 2, 1]);
+    assert.deepEqual(told.slice(3), ["reconnecting", "snapshot", "live"]);
+    newest().send("snapshot");
+    assert.deepEqual(told.slice(6), ["snapshot+", "live"]);
+    listeners.get(type)?.();
+    assert.equal(sources.length, 2, "once");
+  });
+}
+
+test("a sleep of which nothing is told is seen by a late timer, and what was sent before it is old", async () => {
+  newest().send("snapshot");
+  sleep(75_000);
+  await pass(1000);
+  assert.equal(sources.length, 2);
+  newest().send("snapshot");
+  sleep(75_000);
+  newest().send("stage");
+  assert.deepEqual([sources.length, told.includes("stage")], [3, false]);
+});
+
+test("a page that was hidden and has heard all goes on; another network is another connection", async () => {
+  newest().send("snapshot");
+  await pass(9000);
+  newest().send("clock");
+  await pass(9000);
+  listeners.get("visibilitychange")?.();
+  assert.equal(sources.length, 1);
+  listeners.get("online")?.();
+  assert.equal(sources.length, 2);
 });
 
 test("a stream that falls silent is opened again", async () => {

@@ -1,6 +1,7 @@
 // The 3D stage in its frame, with labels over it.
 import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { isPolling } from "../events.js";
 import { form } from "../form.js";
 import { inMillimetres, tenths } from "../format.js";
 import { narrative } from "../headline.js";
@@ -284,5 +285,6 @@ const SceneChips = () => html`
     ${narrative.value.chips.map(({ kind, words }) => (kind === "strong"
       ? html`<p key="run" class="chip strong" role="group" aria-label="Shown run">${words}</p>`
       : html`<p class=${`chip ${kind}`} title=${CHIP_TITLES[kind]}>${words}</p>`))}
+    ${isPolling.value && html`<p class="chip" role="status">This network holds live updates back: asking every 2 s</p>`}
   </div>
 `;
