@@ -134,6 +134,10 @@ write_page_types = mkdir -p build && \
 page-types: $(PAGE_STAMP) ## Write the page's types of the API's answers
 	@$(write_page_types) $(PAGE_TYPES)
 
+.PHONY: messages
+messages: $(PAGE_STAMP) ## Complete the catalogues of the page's texts: new ones are empty
+	$(BIN)/node --import ./tests/page/browser.js tests/page/renew-messages.js
+
 .PHONY: page-moments
 page-moments: $(DEV_STAMP) ## Compute the moments of runs with which the page's sentences are compared
 	$(BIN)/python -m tests.page.moments

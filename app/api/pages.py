@@ -38,7 +38,8 @@ _POLICY_OF_PARTS = {"Content-Security-Policy": "default-src 'none'; frame-ancest
 """Shorter than that of other files: a first visit loads some sixty of them."""
 """They are for who reads the sources, and more than a kilobyte of a first visit."""
 _INDEX = "index.html"
-_HTML = '<html lang="en">'
+_HTML = '<html lang="en"'
+"""How the first element of each page begins: its sources are in English."""
 _TITLE = "<title>Racing Hexapods</title>"
 VIEWS: Mapping[str, str] = {"runs": "Runs", "compare": "Compare runs"}
 """Titles of the core's views, beside that of the race, by their names; features add theirs."""
@@ -59,9 +60,12 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
         page_files: folders of the files.
     """
     page = _page(_INDEX, page_files)
-    index = _content(page)
+    languages = languages_of(page_files.folder)
+    index = PageContent(page, languages)
     titles = view_titles(page_features(page_files))
-    views = {name: _content(_opening(page, name, title)) for name, title in titles.items()}
+    views = {
+        name: PageContent(_opening(page, name, title), languages) for name, title in titles.items()
+    }
     left_out = [page_files.folder / "features" / name for name in page_files.without]
     files = _Files(page_files.folder, left_out)
     public = RoutePolicy(access=PUBLIC)
@@ -92,9 +96,54 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
     ]
 
 
-def page_content(name: str, page_files: PageFiles) -> CompressedContent:
+def page_content(name: str, page_files: PageFiles) -> "PageContent":
     """Return a page of the dashboard's folder, with preloads and a content security policy."""
-    return _content(_page(name, page_files))
+    return PageContent(_page(name, page_files), languages_of(page_files.folder))
+
+
+class PageContent:
+    """A page in English and in each language that it is translated to, compressed once.
+
+    The texts are translated by the page's scripts (`static/js/translation.js`). The HTML differs by
+    the attribute `lang`, by which they know the language, and by a preload of the catalogue.
+    """
+
+    def __init__(self, page: str, languages: Sequence[str]) -> None:
+        """Compress a page.
+
+        Args:
+            page: its HTML, in English.
+            languages: codes of the languages with a catalogue.
+        """
+        self._english = _content(page)
+        self._translated = {code: _content(_translated(page, code)) for code in languages}
+
+    def response(self, scope: Scope) -> Response:
+        """Return the response to a request: in the language of its query parameter `lang`.
+
+        In English where there is none, or the page is not translated to it; the page says so.
+        """
+        language = Request(scope).query_params.get("lang", "")
+        return self._translated.get(language, self._english).response(scope)
+
+
+def languages_of(folder: Path) -> list[str]:
+    """Return the codes of the languages to which the page is translated: of its catalogues."""
+    return sorted(catalogue.stem for catalogue in folder.glob("messages/*.json"))
+
+
+def _translated(page: str, code: str) -> str:
+    """Return the HTML of a page that its scripts translate, and which preloads what they need."""
+    entry = _ENTRY.search(page)
+    if entry is None:
+        raise ValueError("The page has no module as its entry point.")
+    static = f"{entry[1]}static"
+    links = (
+        f'<link rel="modulepreload" href="{static}/js/translation.js">\n'
+        f'<link rel="preload" href="{static}/messages/{code}.json" as="fetch" crossorigin>\n'
+    )
+    page = page.replace(_HTML, f'<html lang="{code}"', 1)
+    return page.replace("<title>", f"{links}<title>", 1)
 
 
 def _content(page: str) -> CompressedContent:
@@ -104,7 +153,7 @@ def _content(page: str) -> CompressedContent:
 
 def _opening(page: str, view: str, title: str) -> str:
     """Return the HTML of a page that opens a view, whose title it has."""
-    opening = page.replace(_HTML, f'{_HTML[:-1]} data-view="{html.escape(view)}">', 1)
+    opening = page.replace(_HTML, f'{_HTML} data-view="{html.escape(view)}"', 1)
     return opening.replace(_TITLE, f"<title>{html.escape(title)} · Racing Hexapods</title>", 1)
 
 
@@ -228,7 +277,7 @@ def robots_txt(request: Request) -> Response:
 
 
 def page_of(
-    page: CompressedContent, find: Callable[[Services, Mapping[str, str]], object]
+    page: PageContent, find: Callable[[Services, Mapping[str, str]], object]
 ) -> Callable[[Request], Response]:
     """Return the endpoint of a page, with the status 404 if the subject of the page is not found.
 

@@ -6,7 +6,7 @@ import { textOf } from "./disturbances.js";
 import {
   chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
-import { count, listed, whole } from "./format.js";
+import { listed, t } from "./format.js";
 import { changeIfStillHere, linkTo, page, showAddress } from "./page-state.js";
 import { copy, toast } from "./page.js";
 import {
@@ -99,30 +99,32 @@ export const missingLane = computed(() => {
   const { agent, lanes } = form.value;
   if (!hasLearner.value || lanes.includes(agent)) return null;
   const { title } = agentOf(agent);
-  const otherTitles = listed(racingLearners.value.map((name) => agentOf(name).title));
+  const others = listed(racingLearners.value.map((name) => agentOf(name).title));
   const isFixed = lanes.length >= (limitsOf("lanes").maximum ?? Infinity) || isClosed("lanes");
-  const action = { label: `Add ${title}`, run: () => setField("lanes", [agent, ...lanes]) };
-  return { words: `${title} is not in the race; ${otherTitles} will learn and race.`, action: isFixed ? null : action };
+  const action = { label: t("Add {robot}", { robot: title }), run: () => setField("lanes", [agent, ...lanes]) };
+  const words = t("{robot} is not in the race; {others} will learn and race.", { robot: title, others });
+  return { words, action: isFixed ? null : action };
 });
 
 /** "Practise 500 more" */
 const practiseMore = () => {
   const steps = validSteps();
-  return steps === null ? "Practise more" : `Practise ${whole(steps)} more`;
+  return steps === null ? t("Practise more") : t("Practise {steps} more", { steps });
 };
 
 /** The action of the primary button. @type {Signal<Action>} */
 export const primaryAction = computed(() => {
-  if (!hasLearner.value) return { label: "Race", run: () => startRace() };
+  if (!hasLearner.value) return { label: t("Race"), run: () => startRace() };
   const tables = laneTables.value;
   if (isRaceRun.value && tables) {
     return {
-      label: `${practiseMore()}, race again`,
+      label: t("{practice}, race again", { practice: practiseMore() }),
       run: () => startRace({ continued: tables }),
     };
   }
   const steps = validSteps();
-  return { label: `Train${steps === null ? "" : ` ${count(steps, "step")}`}, then race`, run: () => startRace() };
+  const label = steps === null ? t("Train, then race") : t("Train {steps} {steps|step|steps}, then race", { steps });
+  return { label, run: () => startRace() };
 });
 
 /** The other ways to start. @type {Signal<Action[]>} */
@@ -130,14 +132,15 @@ export const secondaryActions = computed(() => {
   if (!hasLearner.value) return [];
   /** @type {Action[]} */
   const actions = [];
-  if (isRaceRun.value) actions.push({ label: "Start over", run: () => startRace() });
-  else actions.push({ label: "Train, don’t race", run: () => startTraining() });
+  if (isRaceRun.value) actions.push({ label: t("Start over"), run: () => startRace() });
+  else actions.push({ label: t("Train, don’t race"), run: () => startTraining() });
   const table = matchingTable.value;
-  if (table) actions.push({ label: `${practiseMore()}, don’t race`, run: () => continueTraining(table) });
+  const practice = practiseMore();
+  if (table) actions.push({ label: t("{practice}, don’t race", { practice }), run: () => continueTraining(table) });
   const tables = laneTables.value;
-  if (tables) actions.push({ label: "Race only", run: () => startRace({ tables }) });
+  if (tables) actions.push({ label: t("Race only"), run: () => startRace({ tables }) });
   if (racingLearners.value.every((agent) => form.value[`${agent}.keep_learning`])) {
-    actions.push({ label: "Race without practice", run: () => startRace({ isUnpractised: true }) });
+    actions.push({ label: t("Race without practice"), run: () => startRace({ isUnpractised: true }) });
   }
   return actions;
 });
@@ -368,9 +371,10 @@ function configOfRace({ config: { lanes, steps, ...walk } }) {
 export async function share() {
   const moment = { run: page.run.peek(), ghost: page.ghost.peek(), moment: position.peek() };
   const address = linkTo(isOwn.value ? moment : undefined);
-  const contents = isOwn.value ? "It opens this replay at this moment." : "It contains every setting that was changed.";
-  if (!(await copy(address, `Link copied. ${contents}`))) {
+  const contents = isOwn.value ? t("Link copied. It opens this replay at this moment.")
+    : t("Link copied. It contains every setting that was changed.");
+  if (!(await copy(address, contents))) {
     showAddress(address);
-    toast("The address bar has the link: copy it from there.");
+    toast(t("The address bar has the link: copy it from there."));
   }
 }

@@ -1,5 +1,6 @@
 // Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
+import { inWords, t } from "./format.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Annotations, Curve, Curves, Disturbance } from "./types.js" */
@@ -161,7 +162,7 @@ export const keepAnswer = (key, ask, reply, pause_ms) => askForNewest({
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
   constructor() {
-    super("The server does not answer. Try again once it is back.");
+    super(t("The server does not answer. Try again once it is back."));
   }
 }
 
@@ -178,7 +179,7 @@ const fieldOf = (error) => {
  */
 export const refusal = (status, problem) =>
   new RequestError(
-    problem.detail || problem.title || `The server answered ${status}.`, status,
+    problem.detail || problem.title || t("The server answered {status}.", { status }), status,
     [...problem.errors ?? [], { field: problem.field }].map(fieldOf).filter(Boolean), problem.legs,
   );
 
@@ -230,7 +231,7 @@ const collection = (kind) => `${kind}s`;
 export const pathOf = ({ kind, id }) => `${collection(kind ?? "training")}/${encodeURIComponent(id)}`;
 
 /** @returns {Promise<Options>} */
-export const getOptions = () => call("GET", "options");
+export const getOptions = async () => inWords(await call("GET", "options"));
 
 /** @type {(id: string) => Promise<Run>} */
 export const getAnyRun = (id) => call("GET", `runs/${encodeURIComponent(id)}`);

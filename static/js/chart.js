@@ -285,3 +285,37 @@ export const csvOf = ({ columns, rows }) =>
 /** A file's name of words: "learning-curve". @param {string} words */
 export const fileNameOf = (words) =>
   words.toLowerCase().normalize("NFKD").replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "chart";
+
+// ---- the axis of a chart as it is drawn
+
+/**
+ * The axis that a chart's keys, pointer and menu act on.
+ * @typedef {object} Axis
+ * @property {string} axis
+ * @property {number[]} xs where there are values, ascending
+ * @property {Range} whole
+ * @property {Range} part that is shown
+ * @property {number} now the index that is read first
+ * @property {((x: number) => unknown) | null} seek
+ * @property {{ shown: number, computed: number } | null} reach up to where lines are shown, and to where they can be
+ */
+
+/** The index at the crosshair, if it is on this axis and in view; else null. @param {Axis} axis */
+export function readIndex({ axis, xs, part: [low, high] }) {
+  const at = crosshair.value;
+  if (at?.axis !== axis) return null;
+  const index = nearestIndex(xs, at.x);
+  return index >= 0 && xs[index] >= low && xs[index] <= high ? index : null;
+}
+
+/**
+ * Zoom by a factor around the crosshair, or around the middle; 0 shows all.
+ * @param {Axis} chart
+ * @param {number} factor
+ */
+export function zoomBy(chart, factor) {
+  const { axis, whole, part, xs } = chart;
+  const index = readIndex(chart);
+  const middle = index === null ? (part[0] + part[1]) / 2 : xs[index];
+  zoomTo(axis, factor ? scaledAround(part, middle, factor) : null, whole);
+}

@@ -1,5 +1,5 @@
 // Disturbances of robots and ground: conditions of a step, their words, and their text in links and commands.
-import { listed, sentence, whole } from "./format.js";
+import { decimal, listed, sentence, t } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
 import { builtPart, kindFor, kindNamed, legIn } from "./robots.js";
 import { fieldBeside, mistakeIn, options } from "./settings.js";
@@ -129,9 +129,9 @@ const JOIN = "\u00a0";
 
 /** @type {(value: any, unit: string | null) => string} */
 export function withUnit(value, unit) {
-  const text = String(value).replace("-", "\u2212");
+  const text = decimal(value).replace("-", "\u2212");
   if (unit === "m" && value !== 0 && Math.abs(value) < MIN_METRES) {
-    return `${Number((1000 * value).toPrecision(4))}${JOIN}mm`;
+    return `${decimal(Number((1000 * value).toPrecision(4)))}${JOIN}mm`;
   }
   return unit === "°" ? `${text}°` : `${text}${unit ? JOIN + unit : ""}`;
 }
@@ -154,7 +154,8 @@ function fieldsInWords(disturbance) {
 export const adjectiveOf = (kind) => kindNamed(kind)?.adjective ?? kind;
 
 /** @param {number[]} legs */
-const legsInWords = (legs) => `leg${legs.length > 1 ? "s" : ""}${JOIN}${legs.join(", ")}`;
+const legsInWords = (legs) =>
+  (legs.length > 1 ? t("legs\u00a0{legs}", { legs: legs.join(", ") }) : t("leg\u00a0{leg}", { leg: legs[0] }));
 
 /**
  * A disturbance in a few words: "legs 1, 4 limp", "slope 8°".
@@ -164,7 +165,10 @@ export function inWords(disturbance) {
   const values = fieldsInWords(disturbance);
   const { kind, leg, legs, joint, angle_rad } = disturbance;
   if (legs) return [`${legsInWords(legs)} ${adjectiveOf(kind)}`, ...values].join(", ");
-  if (leg) return `leg${JOIN}${leg}: ${joint} ${kind} at ${withUnit(angle_rad, "rad")}`;
+  if (leg) {
+    const stuck = { leg, joint: `${joint}`, kind, angle: withUnit(angle_rad, "rad") };
+    return t("leg\u00a0{leg}: {joint} {kind} at {angle}", stuck);
+  }
   const title = (kindNamed(kind)?.title ?? kind).toLowerCase();
   return [title, values.join(", ")].filter(Boolean).join(" ");
 }
@@ -195,10 +199,11 @@ export const conditionsInWords = (conditions) => joined(conditions).map(inWords)
  */
 export function inTime(disturbance) {
   const lasts = kindNamed(disturbance.kind)?.lasts ?? true;
-  const from = `${lasts ? "from" : "in"} step ${whole(disturbance.at_step + 1)}`;
+  const step = disturbance.at_step + 1;
   const words = [inWords(disturbance)];
-  if (disturbance.at_step > 0 || !lasts) words.push(from);
-  if (disturbance.until_step) words.push(`to step ${whole(disturbance.until_step)}`);
+  if (!lasts) words.push(t("in step {step}", { step }));
+  else if (disturbance.at_step > 0) words.push(t("from step {step}", { step }));
+  if (disturbance.until_step) words.push(t("to step {step}", { step: disturbance.until_step }));
   return words.join(" ");
 }
 

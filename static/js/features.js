@@ -7,6 +7,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { root } from "./api.js";
 import { html } from "./components/elements.js";
+import { inWords } from "./format.js";
 import { declareFields, declareWords, page } from "./page-state.js";
 import { addHandlers, connection, setEntry } from "./store.js";
 
@@ -15,7 +16,7 @@ import { addHandlers, connection, setEntry } from "./store.js";
 /** @import { Deck, Feature, LoadedPart, MenuRow, Run, RunKind, SlotPart } from "./types.js" */
 
 /** What the server has written into the page. @returns {Feature[]} */
-const declared = () => JSON.parse(document.getElementById?.("features")?.textContent || "[]");
+const declared = () => inWords(JSON.parse(document.getElementById?.("features")?.textContent || "[]"));
 
 /** The features that are there, by name. */
 export const features = signal(declared());

@@ -1,4 +1,31 @@
-// Formats numbers, times and lists for people.
+// Texts, numbers, times and lists for people, in the language that the page's HTML says.
+
+const { lang = "" } = document.documentElement;
+/** Of the page's language; null in English, which is what the code has. */
+export const translation = lang && lang !== "en" ? await (await import("./translation.js")).translationTo(lang) : null;
+
+/**
+ * What the server names, as agents and worlds, in the page's language.
+ * @template Answer
+ * @param {Answer} answer
+ * @returns {Answer}
+ */
+export const inWords = (answer) => translation?.answer(answer) ?? answer;
+/** For dates; by default the browser's. */
+const locale = translation ? lang : [];
+
+/**
+ * A text in the page's language, with its values: `{name}` is one, a number as `whole` has it; `{steps|step|steps}` is
+ * the first text where the value is one, else the second.
+ * @param {string} text in English
+ * @param {Record<string, string | number>} [values]
+ */
+export const t = (text, values = {}) => (translation?.messages[text] ?? text).replace(
+  /\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (_, name, first, second) => {
+    const value = values[name];
+    if (second === undefined) return typeof value === "number" ? whole(value) : value;
+    return (translation ? translation.plurals.select(Number(value)) === "one" : value === 1) ? first : second;
+  });
 
 const MINUS = "\u2212";
 const NO_BREAK = "\u00a0";
@@ -16,6 +43,12 @@ const SMALLEST_GROUPED = 10_000;
  */
 const isNumber = (value) => typeof value === "number" && !Number.isNaN(value);
 
+/** A number as its digits have it: "0.5", in German "0,5". @param {number | string} number */
+export const decimal = (number) => String(number).replace(".", translation?.mark ?? ".");
+
+/** A number with so many decimals: "0.38", in German "0,38". @param {number} value @param {number} digits */
+export const fixed = (value, digits) => decimal(value.toFixed(digits));
+
 /**
  * Metres to the centimetre: "0.38 m".
  * @param {Optional} value
@@ -23,7 +56,7 @@ const isNumber = (value) => typeof value === "number" && !Number.isNaN(value);
 export function metres(value) {
   if (!isNumber(value)) return MISSING;
   const rounded = Math.round(value * 100) / 100;
-  return `${rounded < 0 ? MINUS : ""}${Math.abs(rounded).toFixed(2)}${NO_BREAK}m`;
+  return `${rounded < 0 ? MINUS : ""}${fixed(Math.abs(rounded), 2)}${NO_BREAK}m`;
 }
 
 const MIN_CM = 0.01;
@@ -35,7 +68,7 @@ const MIN_CM = 0.01;
 export function distanceApart(value) {
   if (value >= MIN_CM) return `${Math.round(100 * value)}${NO_BREAK}cm`;
   const rounded = Math.round(1000 * value);
-  return rounded < 1 ? `under 1${NO_BREAK}mm` : `${rounded}${NO_BREAK}mm`;
+  return rounded < 1 ? t("under 1\u00a0mm") : `${rounded}${NO_BREAK}mm`;
 }
 
 /**
@@ -52,8 +85,8 @@ export function millimetres(value) {
  * @param {number} value [m]
  */
 export function tenths(value) {
-  const text = (1000 * value).toFixed(1);
-  return text === "-0.0" ? "0.0" : text.replace("-", MINUS);
+  const text = fixed(Math.abs(1000 * value), 1);
+  return value < 0 && /[1-9]/.test(text) ? MINUS + text : text;
 }
 
 /** The same with its unit: "24.4 mm". @param {number} value [m] */
@@ -67,10 +100,10 @@ export function decision(seconds) {
   if (!isNumber(seconds)) return MISSING;
   const ms = seconds * 1000;
   if (ms < 1) return "<1 ms";
-  return ms < 1000 ? `${Math.round(ms)} ms` : `${(ms / 1000).toFixed(1)} s`;
+  return ms < 1000 ? `${Math.round(ms)} ms` : `${fixed(ms / 1000, 1)} s`;
 }
 
-const UNDER_1_S = "under 1 s";
+const UNDER_1_S = t("under 1 s");
 
 /**
  * A duration: "4 s", "2 min", "1 h 5 min".
@@ -92,7 +125,7 @@ export const SAME_MOMENT_S = 0.001;
 
 /** An estimated duration: "about 4 s", "under 1 s". @param {number} seconds */
 export const aboutDuration = (seconds) =>
-  (duration(seconds) === UNDER_1_S ? UNDER_1_S : `about ${duration(seconds)}`);
+  (duration(seconds) === UNDER_1_S ? UNDER_1_S : t("about {duration}", { duration: duration(seconds) }));
 
 /**
  * A moment of a race or practice, as on the time bar: "1:05".
@@ -128,13 +161,13 @@ export const percentage = (share) => `${String(Math.round(100 * share)).replace(
  * @param {number} number
  * @param {string} noun
  */
-export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? "" : "s"}`;
+export const count = (number, noun) => t(`{number} {number|${noun}|${noun}s}`, { number });
 
 /**
  * A factor: "×2", "×0.25".
  * @param {number} factor
  */
-export const times = (factor) => `×${Number(factor.toPrecision(2))}`;
+export const times = (factor) => `×${decimal(Number(factor.toPrecision(2)))}`;
 
 /**
  * How long ago a moment was: "2 min ago"; from an hour on, the local time and day.
@@ -143,12 +176,12 @@ export const times = (factor) => `×${Number(factor.toPrecision(2))}`;
 export function ago(iso, now = Date.now()) {
   const then = Date.parse(iso);
   const seconds = (now - then) / 1000;
-  if (seconds < 60) return "just now";
-  if (seconds < 3600) return `${Math.floor(seconds / 60)} min ago`;
+  if (seconds < 60) return t("just now");
+  if (seconds < 3600) return t("{minutes} min ago", { minutes: Math.floor(seconds / 60) });
   const day = new Date(then);
-  const time = day.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
-  if (new Date(now).toDateString() === day.toDateString()) return `today, ${time}`;
-  return `${day.toLocaleDateString([], { day: "numeric", month: "short" })}, ${time}`;
+  const time = day.toLocaleTimeString(locale, { hour: "2-digit", minute: "2-digit" });
+  if (new Date(now).toDateString() === day.toDateString()) return t("today, {time}", { time });
+  return `${day.toLocaleDateString(locale, { day: "numeric", month: "short" })}, ${time}`;
 }
 
 /**
@@ -158,8 +191,8 @@ export function ago(iso, now = Date.now()) {
 export function shortTime(iso, now = Date.now()) {
   const then = new Date(iso);
   return new Date(now).toDateString() === then.toDateString()
-    ? then.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit", hourCycle: "h23" })
-    : then.toLocaleDateString([], { day: "numeric", month: "short" });
+    ? then.toLocaleTimeString(locale, { hour: "2-digit", minute: "2-digit", hourCycle: "h23" })
+    : then.toLocaleDateString(locale, { day: "numeric", month: "short" });
 }
 
 /**
@@ -172,8 +205,8 @@ export const sentence = (text) => text.replace(/^\p{Script=Latin}/u, (first) => 
  * Items as a list in words: "a", "a and b", "a, b and c".
  * @param {string[]} items
  */
-export const listed = (items) =>
-  items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items.at(-1)}`;
+export const listed = (items) => translation?.listed(items) ??
+  (items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items.at(-1)}`);
 
 /** A room's code in two groups, as it is read and typed: "ABCD EFGH". @param {string} code */
 export const codeInGroups = (code) =>

@@ -2,7 +2,7 @@
 // readers. The sentences are those of narrative/narrative.js.
 import { computed, effect, signal } from "@preact/signals";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
-import { metres, sentence } from "./format.js";
+import { metres, sentence, t } from "./format.js";
 import { canPlay, conditionsShown, raceInView, resumableOnStage, shownRun } from "./on-stage.js";
 import { page } from "./page-state.js";
 import { knownRace } from "./race.js";
@@ -38,9 +38,9 @@ function testsOf(run) {
 function ghostsInWords() {
   if (page.ghost.value === null) return null;
   const run = runs.value.get(page.ghost.value);
-  const title = run ? run.name || sentence(run.kind) : "another run";
+  const title = run ? run.name || sentence(run.kind) : t("another run");
   const distances = (scene.value?.ghost_lanes ?? []).map(({ name, distance_m }) => `${name} ${metres(distance_m)}`);
-  return `Ghosts: ${title}${distances.length ? ` (${distances.join(", ")})` : ""}`;
+  return t("Ghosts: {run}", { run: title + (distances.length ? ` (${distances.join(", ")})` : "") });
 }
 
 /** The scene, if it is not that of another run than the one on stage. @param {Run | null} run */
@@ -77,14 +77,16 @@ export const moveTold = signal(null);
 /** Why an agent's steps gain nothing. @param {string} agent */
 export function whyMarching(agent) {
   const { learns, searches } = agentOf(agent);
-  const gain = "under 1 cm in ten steps";
-  if (learns) return `${gain}: moves that undo each other still have the highest values. More practice changes that.`;
-  return searches ? `${gain}: no move that it simulates gains distance on this robot.` : `${gain}.`;
+  const gain = t("under 1 cm in ten steps");
+  if (learns) {
+    return t("{gain}: moves that undo each other still have the highest values. More practice changes that.", { gain });
+  }
+  return searches ? t("{gain}: no move that it simulates gains distance on this robot.", { gain }) : `${gain}.`;
 }
 
 // ---- announcements for screen readers, each made once: who takes the lead, results, failures, a lost connection
 
-const LOST = "Connection lost, reconnecting";
+const LOST = t("Connection lost, reconnecting");
 /** Robots that overtake each other in turn are told of at most so often [ms]. */
 const LEAD_PAUSE_MS = 4000;
 
@@ -103,7 +105,7 @@ export function announceOutcomes() {
   });
   effect(() => {
     if (connection.value === "reconnecting") announcement.value = LOST;
-    else if (connection.value === "live" && announcement.peek() === LOST) announcement.value = "Connected again";
+    else if (connection.value === "live" && announcement.peek() === LOST) announcement.value = t("Connected again");
   });
 }
 

@@ -4,7 +4,7 @@
 import { computed } from "@preact/signals";
 import { conditionsAt, conditionsInWords, disturbancesOf } from "./disturbances.js";
 import { form } from "./form.js";
-import { count, duration, sentence, whole } from "./format.js";
+import { duration, sentence, t } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
 import { earlyEndOf } from "./narrative/moment.js";
 import {
@@ -265,7 +265,7 @@ function secondsLeft(run) {
 }
 
 /** @type {Record<string, string>} */
-const VERBS = { training: "Practising", race: "Simulating the race" };
+const VERBS = { training: t("Practising"), race: t("Simulating the race") };
 
 /**
  * Progress as a bar: `share` is computed, and `shown` of it is in the picture, where the picture is of that run.
@@ -280,10 +280,10 @@ export const progress = computed(() => {
 
 /** As it was heard last: whether it goes on is not known. @type {(known: Progress) => Progress} */
 const lastKnown = ({ label, ...rest }) =>
-  ({ ...rest, label: `Last known: ${label[0].toLowerCase()}${label.slice(1)}`, left: "" });
+  ({ ...rest, label: t("Last known: {label}", { label: label[0].toLowerCase() + label.slice(1) }), left: "" });
 
 /** Told to those who wait for others. @param {Run} run */
-const placeInQueue = ({ queue_position: place }) => (isGuest.value && place ? `, place ${place}` : "");
+const placeInQueue = ({ queue_position: place }) => (isGuest.value && place ? t(", place {place}", { place }) : "");
 
 /** @param {{ requested: Run, current: Run }} work @returns {Progress} */
 function ofWork({ requested, current }) {
@@ -291,25 +291,25 @@ function ofWork({ requested, current }) {
   const share = total ? done / total : 0;
   const seen = shownRun.value?.id === current.id ? stepsShown.value : null;
   const shown = seen === null || !total ? null : Math.min(seen, done) / total;
-  const then = requested === current ? "" : ", then the race";
+  const then = requested === current ? "" : t(", then the race");
   if (current.state === "queued") {
-    return { label: `Waiting in the queue${placeInQueue(current)}${then}`, left: "", share: 0, shown: null };
+    return { label: t("Waiting in the queue") + placeInQueue(current) + then, left: "", share: 0, shown: null };
   }
-  const steps = `${whole(done)} of ${count(total, "step")}`;
-  if (current.state === "paused") return { label: `Paused at ${steps}${then}`, left: "", share, shown };
+  const steps = t("{done} of {total} {total|step|steps}", { done, total });
+  if (current.state === "paused") return { label: t("Paused at {steps}", { steps }) + then, left: "", share, shown };
   const seconds = secondsLeft(current);
-  const left = seconds === null ? "" : `${duration(seconds)} left`;
-  const verb = VERBS[current.kind] ?? "Running";
+  const left = seconds === null ? "" : t("{time} left", { time: duration(seconds) });
+  const verb = VERBS[current.kind] ?? t("Running");
   if (seen === null) return { label: `${verb}, ${steps}${then}${notShown(current)}`, left, share, shown };
   const isBehind = done - seen > MAX_LAG_STEPS;
-  const label = isBehind ? `${verb}: ${whole(seen)} shown ▸ ${steps} computed${then}` : `${verb}, ${steps}${then}`;
-  return { label, left, share, shown };
+  const label = isBehind ? t("{verb}: {seen} shown ▸ {steps} computed", { verb, seen, steps }) : `${verb}, ${steps}`;
+  return { label: label + then, left, share, shown };
 }
 
 /** @param {Run} run */
 function notShown(run) {
   if (!playback.value?.run_id || playback.value.run_id === run.id) return "";
-  return isToCome(run) ? ", shown next" : ", not on the stage";
+  return isToCome(run) ? t(", shown next") : t(", not on the stage");
 }
 
 /** @param {Scene | null} now @returns {Progress | null} */
@@ -322,25 +322,32 @@ function ofPlayback(now) {
   const isTimeLapse = now.kind === "training" && playback.value?.speed === "time-lapse";
   const isPaused = playback.value?.playing === false;
   return {
-    label: isPaused ? `The ${playbackName.value} is paused` : showing(now),
-    left: isPaused || isTimeLapse ? "" : `${duration(rest)} left`,
+    label: isPaused ? pausedLabel() : showing(now),
+    left: isPaused || isTimeLapse ? "" : t("{time} left", { time: duration(rest) }),
     share: now.computed_s / now.duration_s,
     shown: now.time_s / now.duration_s,
   };
 }
 
+const pausedLabel = () => (isOwn.value ? t("The replay is paused") : t("The stage is paused"));
+
 /** @param {Scene} now */
 function showing(now) {
-  if (playback.value?.origin !== "started") return `Replaying the ${now.kind}`;
-  const how = earlyEndOf(shownRun.value) ? "as far as it came" : "to its end";
-  return `Showing the ${now.kind}, which is computed ${how}`;
+  const isRace = now.kind === "race";
+  if (playback.value?.origin !== "started") return isRace ? t("Replaying the race") : t("Replaying the training");
+  if (earlyEndOf(shownRun.value)) {
+    return isRace ? t("Showing the race, which is computed as far as it came")
+      : t("Showing the training, which is computed as far as it came");
+  }
+  return isRace ? t("Showing the race, which is computed to its end")
+    : t("Showing the training, which is computed to its end");
 }
 
 // ---- the title of the window
 
 const PRODUCT = "Racing Hexapods";
 /** @type {Record<string, string>} */
-const VIEW_TITLES = { runs: "Runs", compare: "Compare runs" };
+const VIEW_TITLES = { runs: t("Runs"), compare: t("Compare runs") };
 
 /**
  * The window's title: the connection if it is lost, the view, or what the stage shows.
@@ -350,7 +357,7 @@ const VIEW_TITLES = { runs: "Runs", compare: "Compare runs" };
 export function windowTitle(view, headline) {
   const title = VIEW_TITLES[view] ?? partsOf("views")[view]?.title;
   const parts = [title ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];
-  if (isLockedOut.value) parts.splice(0, 1, "No access");
-  else if (isAway.value) parts.unshift("Reconnecting");
+  if (isLockedOut.value) parts.splice(0, 1, t("No access"));
+  else if (isAway.value) parts.unshift(t("Reconnecting"));
   return [...parts, PRODUCT].filter(Boolean).map((word) => sentence(/** @type {string} */ (word))).join(" · ");
 }

@@ -98,10 +98,15 @@ export const GROUPINGS = ["sweep", "race", "day", "none"];
 /** Parts of the page that can be hidden; features add theirs. */
 const HIDEABLE = ["panel"];
 
+/** The languages of the page: codes of links, and names in them. `messages/` has a catalogue of each but the first. */
+export const LANGUAGES = { en: "English", de: "Deutsch", fr: "Français" };
+
 /** The fields, in the order in which an address has them. */
 const FIELDS = {
   /** The open view. */
   view: { part: "hash", name: "view", initial: "race", ...oneOf(VIEWS), isEntry: true },
+  /** The language. */
+  lang: { part: "query", name: "lang", initial: "en", ...oneOf(Object.keys(LANGUAGES)) },
   /** What was set of the next run, by field, as it was typed. */
   form: { part: "query", ...TEXTS },
   /** Id of the run that this page replays by itself; null for the stage that all share. */
@@ -225,7 +230,7 @@ const present = () =>
 export const write = () => written(present());
 
 /** The address of a page in which only these fields are set. @param {Partial<PageState>} values */
-export const addressOf = (values) => written({ ...INITIAL, ...values });
+export const addressOf = (values) => written({ ...INITIAL, lang: page.lang.peek(), ...values });
 
 /** The fields of which a change is a new entry of the history, as a text. */
 export const entry = () => queryOf(ENTRIES.flatMap(([name, field]) =>
@@ -284,7 +289,9 @@ export function followHistory() {
     read(address);
     lastAddress = entry();
   });
-  readAddress(isOfView ? { search: "", hash: `#${view}${location.search}` } : location);
+  const [ofPage, ofOpened] = [true, false].map((isOfPage) => String(new URLSearchParams(
+    [...new URLSearchParams(location.search)].filter(([name]) => (name === "lang") === isOfPage))));
+  readAddress(isOfView ? { search: ofPage, hash: `#${view}?${ofOpened}` } : location);
   addEventListener("popstate", () => readAddress(location));
   effect(() => {
     const [address, now] = [write(), entry()];
@@ -294,6 +301,9 @@ export function followHistory() {
     history[isOther ? "pushState" : "replaceState"](history.state, "", `${pathname}${address}`);
   });
 }
+
+/** A link to the page as it is in another language. @param {string} lang */
+export const linkIn = (lang) => `${location.origin}${location.pathname}${written({ ...present(), lang })}`;
 
 /** A link to the page as it is, or with only these fields set. @param {Partial<PageState>} [values] */
 export const linkTo = (values) => `${location.origin}${location.pathname}${values ? addressOf(values) : write()}`;

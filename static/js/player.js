@@ -3,7 +3,7 @@
 // where it is held, is of the page's state.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, isLasting } from "./api.js";
-import { SAME_MOMENT_S } from "./format.js";
+import { SAME_MOMENT_S, t } from "./format.js";
 import { sceneOf } from "./narrative/moment.js";
 import { change, page } from "./page-state.js";
 import { isStill } from "./page.js";
@@ -161,7 +161,7 @@ const lose = () => batch(() => {
   picture?.remove();
   forget();
   scene.value = null;
-  replayProblem.value = "This run was deleted. It can be replayed no more.";
+  replayProblem.value = t("This run was deleted. It can be replayed no more.");
 });
 
 /** Forget what is known of what was played. */

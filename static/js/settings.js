@@ -1,7 +1,7 @@
 // What the server offers, its options; and the settings among them: their controls, names and limits, and those of each
 // agent.
 import { computed, signal } from "@preact/signals";
-import { sentence, whole } from "./format.js";
+import { sentence, t, whole } from "./format.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Agent, Bounds, FieldOption, Limits, Options, SettingOption, SettingValue } from "./types.js" */
@@ -103,11 +103,12 @@ export function limitsOf(field) {
  * @param {Limits} limits
  */
 export function rangeOf({ minimum, maximum, excludes_minimum, excludes_maximum }) {
-  const lower = minimum === null ? "" : `${excludes_minimum ? "over" : "at least"} ${formatted(minimum)}`;
-  const upper = maximum === null ? "" : `${excludes_maximum ? "under" : "at most"} ${formatted(maximum)}`;
+  const [low, high] = [minimum, maximum].map((limit) => (limit === null ? "" : formatted(limit)));
+  const lower = !low ? "" : excludes_minimum ? t("over {low}", { low }) : t("at least {low}", { low });
+  const upper = !high ? "" : excludes_maximum ? t("under {high}", { high }) : t("at most {high}", { high });
   if (minimum === null || maximum === null) return lower || upper;
-  if (excludes_minimum) return `${lower} and ${upper}`;
-  return `from ${formatted(minimum)} to ${excludes_maximum ? "under " : ""}${formatted(maximum)}`;
+  if (excludes_minimum) return t("{lower} and {upper}", { lower, upper });
+  return excludes_maximum ? t("from {low} to under {high}", { low, high }) : t("from {low} to {high}", { low, high });
 }
 
 /** @type {(value: number, limits: Limits) => boolean} */
@@ -124,11 +125,12 @@ const isWithin = (value, { minimum, maximum, excludes_minimum, excludes_maximum 
 export function mistakeIn(value, limits, isInteger) {
   const range = rangeOf(limits);
   const said = range && `, ${range}`;
-  if (!Number.isFinite(value)) return `Enter a ${isInteger ? "whole number" : "number"}${said}`;
-  if (isInteger && !Number.isInteger(value)) return `Enter a whole number${said}`;
+  const isOfOtherKind = !Number.isFinite(value) || (isInteger && !Number.isInteger(value));
+  if (isOfOtherKind) return (isInteger ? t("Enter a whole number") : t("Enter a number")) + said;
   // Beyond it a number of the page is not exact: another would be sent than was typed.
-  if (isInteger && value > Number.MAX_SAFE_INTEGER) return `Must be at most ${whole(Number.MAX_SAFE_INTEGER)}`;
-  return isWithin(value, limits) ? null : `Must be ${range}`;
+  const high = Number.MAX_SAFE_INTEGER;
+  if (isInteger && value > high) return t("Must be {range}", { range: t("at most {high}", { high: whole(high) }) });
+  return isWithin(value, limits) ? null : t("Must be {range}", { range });
 }
 
 /**

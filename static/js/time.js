@@ -3,7 +3,7 @@ import { computed } from "@preact/signals";
 import { setStage, togglePlaying } from "./actions.js";
 import { curve, rateChanges, rateInWords } from "./training.js";
 import { disturbancesOf, inWords } from "./disturbances.js";
-import { metres, SAME_MOMENT_S, sentence, whole } from "./format.js";
+import { fixed, metres, SAME_MOMENT_S, sentence, t } from "./format.js";
 import { canPlay, clock, isStale, raceScene, shownRun } from "./on-stage.js";
 import { timeline } from "./race.js";
 import { isCutAtTimeOut, isOwn, openReplay, playReplay, position } from "./player.js";
@@ -62,7 +62,7 @@ function ofRace(isComputing) {
 
 /** @param {Pick<Scale, "unit">} scale @param {number} at */
 export const positionInWords = ({ unit }, at) =>
-  (unit === "s" ? `${at.toFixed(1)}\u00a0s` : `step ${whole(Math.round(at))}`);
+  (unit === "s" ? `${fixed(at, 1)}\u00a0s` : t("step {step}", { step: Math.round(at) }));
 
 // ---- what happened: marks on the bar
 
@@ -86,7 +86,7 @@ function marksOfPractice(run) {
   const practice = curve.value?.run.id === run.id ? curve.value : null;
   const evaluations = (practice?.points ?? []).filter(({ step }) => step > (practice?.from ?? 0)).map((point) => ({
     kind: "evaluation", at: point.step - (practice?.from ?? 0), isMinor: true,
-    text: `test: ${metres(point.distance_m)}`,
+    text: t("test: {distance}", { distance: metres(point.distance_m) }),
   }));
   const changes = rateChanges(run).map((rateChange) => ({
     kind: "change", at: rateChange.step, text: rateInWords(run.config.agent, rateChange),
@@ -94,7 +94,7 @@ function marksOfPractice(run) {
   const happened = disturbancesOf(run).filter(({ at_step }) => at_step > 0)
     .map((disturbance) => ({ kind: "disturbance", at: disturbance.at_step, text: inWords(disturbance) }));
   const fell = run.result?.fell_at_step ?? null;
-  const falls = fell === null ? [] : [{ kind: "fall", at: fell, text: "falls" }];
+  const falls = fell === null ? [] : [{ kind: "fall", at: fell, text: t("falls") }];
   return [...evaluations, ...changes, ...happened, ...falls];
 }
 
@@ -115,7 +115,7 @@ export function timeAtDistance({ points }, distance_m) {
 function marksOfRace(race) {
   const raceTimeline = timeline.value;
   const { time_out_s = null } = raceScene.value ?? {};
-  const timeOut = time_out_s === null ? [] : [{ kind: "time-out", at: time_out_s, text: "time-out" }];
+  const timeOut = time_out_s === null ? [] : [{ kind: "time-out", at: time_out_s, text: t("time-out") }];
   const finish_m = raceTimeline?.finish_line_m ?? 0;
   const ofLanes = (raceTimeline?.lanes ?? []).flatMap((track, lane) => marksOfLane(race, track, lane, finish_m));
   return [...timeOut, ...ofLanes];
@@ -124,15 +124,15 @@ function marksOfRace(race) {
 /** @param {Run} race @param {TimelineLane} track @param {number} lane @param {number} finish_m @returns {Mark[]} */
 function marksOfLane(race, track, lane, finish_m) {
   const name = laneTitle(race.config.lanes[lane] ?? track);
-  const ends = stepEnds(track)?.map(([t]) => t);
+  const ends = stepEnds(track)?.map(([at]) => at);
   const crossed = timeAtDistance(track, finish_m);
   const fell = race.result?.lanes[lane]?.fell_at_step ?? null;
   /** @type {Mark[]} */
   const raceMarks = crossed === null
     ? []
-    : [{ kind: "crossing", at: crossed, lane, text: `${name} crosses the line` }];
+    : [{ kind: "crossing", at: crossed, lane, text: t("{name} crosses the line", { name }) }];
   if (fell !== null && ends?.[fell] !== undefined) {
-    raceMarks.push({ kind: "fall", at: ends[fell], lane, text: `${name} falls` });
+    raceMarks.push({ kind: "fall", at: ends[fell], lane, text: t("{name} falls", { name }) });
   }
   for (const disturbance of disturbancesOf(race)) {
     const at = disturbance.at_step ? ends?.[disturbance.at_step] : undefined;

@@ -1,6 +1,6 @@
 // Display names of what the server knows by identifiers, and of the fields and values of settings.
 import { worldTitle } from "./disturbances.js";
-import { sentence } from "./format.js";
+import { sentence, t } from "./format.js";
 import { customRobotInWords, offered, partInWords, presetOf, storedName } from "./robots.js";
 import { agentOf, choiceTitle, options, shortTitle, titleOf } from "./settings.js";
 
@@ -45,13 +45,13 @@ export const clockTitle = (name) => find(options.value?.clocks, name)?.title ?? 
 
 /** Meaning of flat parts of a lane's line under each clock. @type {Record<string, string>} */
 const FLAT_PARTS = {
-  paper: "Flat parts are thinking, which takes as long as it did in the paper.",
-  wall: "Flat parts are thinking, which takes as long as it did on this machine.",
-  free: "Thinking takes no time without a clock: in a flat part a robot gains no ground.",
+  paper: t("Flat parts are thinking, which takes as long as it did in the paper."),
+  wall: t("Flat parts are thinking, which takes as long as it did on this machine."),
+  free: t("Thinking takes no time without a clock: in a flat part a robot gains no ground."),
 };
 
 /** @param {string} clockName */
-export const flatParts = (clockName) => FLAT_PARTS[clockName] ?? "Flat parts are thinking.";
+export const flatParts = (clockName) => FLAT_PARTS[clockName] ?? t("Flat parts are thinking.");
 
 /**
  * [name, title] of each, for a list of choices.

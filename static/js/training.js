@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, isLasting } from "./api.js";
 import { disturbancesOf, joinedBySteps } from "./disturbances.js";
-import { count, whole } from "./format.js";
+import { count, decimal, t } from "./format.js";
 import { followRuns } from "./runs.js";
 import { trainingInView } from "./on-stage.js";
 import { agentOf } from "./settings.js";
@@ -177,6 +177,13 @@ export function bestMove({ values_m }) {
   return best;
 }
 
+/** Where a foot is, by the server's name of its cell. @type {Record<string, string>} */
+const CELLS = {
+  "home": t("home"), "left": t("left"), "right": t("right"), "front": t("front"), "back": t("back"),
+  "front left": t("front left"), "front right": t("front right"), "back left": t("back left"),
+  "back right": t("back right"),
+};
+
 /**
  * The name of a cell: "front left", or on finer grids "20 left, 10 front".
  * @param {Pick<ActionValues, "cell_names" | "cells_m">} known
@@ -184,11 +191,11 @@ export function bestMove({ values_m }) {
  * @param {string} unit after each number
  */
 export function cellName({ cell_names, cells_m }, cell, unit = "") {
-  if (cell === 0 || cell_names.length <= MAX_NAMED_CELLS) return cell_names[cell];
+  if (cell === 0 || cell_names.length <= MAX_NAMED_CELLS) return CELLS[cell_names[cell]] ?? cell_names[cell];
   const [x, y] = cells_m[cell].map((metres) => Math.round(1000 * metres));
   const parts = [
-    x && `${Math.abs(x)}${unit} ${x < 0 ? "left" : "right"}`,
-    y && `${Math.abs(y)}${unit} ${y > 0 ? "front" : "back"}`,
+    x && `${Math.abs(x)}${unit} ${x < 0 ? CELLS.left : CELLS.right}`,
+    y && `${Math.abs(y)}${unit} ${y > 0 ? CELLS.front : CELLS.back}`,
   ];
   return parts.filter(Boolean).join(", ");
 }
@@ -259,7 +266,7 @@ export function rateChanges({ changes = [], config }, offset = 0) {
 /** @type {(agent: string, change: Pick<RateChange, "name" | "value">) => string} */
 export function rateInWords(agent, { name, value }) {
   const { symbol, title } = agentOf(agent).live_settings[name] ?? { symbol: null, title: name };
-  return `${symbol ?? title}\u00a0${value}`;
+  return `${symbol ?? title}\u00a0${decimal(String(value))}`;
 }
 
 /**
@@ -272,5 +279,5 @@ export const changesInWords = (agent, changes) =>
     const ofName = changes.filter((change) => change.name === name);
     const last = ofName[ofName.length - 1];
     const remark = ofName.length > 1 ? ` (${count(ofName.length, "change")})` : "";
-    return `${rateInWords(agent, last)} from step ${whole(last.step)}${remark}`;
+    return t("{change} from step {step}", { change: rateInWords(agent, last), step: last.step }) + remark;
   });

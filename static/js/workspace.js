@@ -1,5 +1,6 @@
 // The workspace around the stage: its depths and tabs, and the panel. What a depth leaves out is hidden, not undone.
 import { computed, effect } from "@preact/signals";
+import { t } from "./format.js";
 import { chartDepth } from "./chart.js";
 import { features, partsOf } from "./features.js";
 import { phase } from "./on-stage.js";
@@ -11,9 +12,9 @@ import { isPhone, isWide, storedText } from "./page.js";
 
 /** The tabs that are always there. @type {Record<string, TabKind>} */
 const OWN_KINDS = {
-  board: { title: "Board", depth: "watch", order: 10, about: "Ranks, distances and times" },
-  train: { title: "Train", depth: "try", order: 20, about: "The next training and race" },
-  world: { title: "World", depth: "try", order: 30, about: "The ground, and what happens to the robots" },
+  board: { title: t("Board"), depth: "watch", order: 10, about: t("Ranks, distances and times") },
+  train: { title: t("Train"), depth: "try", order: 20, about: t("The next training and race") },
+  world: { title: t("World"), depth: "try", order: 30, about: t("The ground, and what happens to the robots") },
 };
 
 /** Tab → its kind, in the order of the panel. */
@@ -25,9 +26,9 @@ export const allTabs = computed(() => Object.keys(kinds.value));
 
 /** Depth → its title, and what it shows. @type {Record<Depth, { title: string, about: string }>} */
 export const DEPTH_KINDS = {
-  watch: { title: "Watch", about: "The race, who leads, and why" },
-  try: { title: "Try", about: "Change one thing, and see what it does" },
-  study: { title: "Study", about: "Every setting, figure and table" },
+  watch: { title: t("Watch"), about: t("The race, who leads, and why") },
+  try: { title: t("Try"), about: t("Change one thing, and see what it does") },
+  study: { title: t("Study"), about: t("Every setting, figure and table") },
 };
 
 const FIRST_TAB = "board";

@@ -144,7 +144,7 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
 def imported_later(script: Path, folder: Path) -> list[str]:
     """Return the modules that a script imports when they are first needed."""
     # In comments stand types of modules.
-    imports = re.findall(r'import\("(\.[^"]+)"\)+\s*(?:\.then\(|[;,])', script.read_text("utf-8"))
+    imports = re.findall(r'import\("(\.[^"]+)"\)+\s*(?:\.\w+\(|[;,])', script.read_text("utf-8"))
     modules = [(script.parent / path).resolve() for path in imports]
     return [module.relative_to(folder.resolve().parent).as_posix() for module in modules]
 
@@ -221,7 +221,7 @@ def test_the_views_of_the_core_have_the_titles_of_the_page() -> None:
     assert names is not None
     assert titles is not None
     assert re.findall(r"\w+", names[1]) == [*VIEWS]
-    assert dict(re.findall(r'(\w+): "([^"]+)"', titles[1])) == VIEWS
+    assert dict(re.findall(r'(\w+): t\("([^"]+)"\)', titles[1])) == VIEWS
 
 
 @needs("classroom")

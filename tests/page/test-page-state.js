@@ -46,7 +46,7 @@ test("a link is read as the state that wrote it, each field of it", () => {
   const changes = {
     form: new URLSearchParams("alpha=0,7&disturb=limp:legs%3D1,4&disturb=slope:degrees%3D8&steps="),
     run: "a", ghost: "b", moment: 2.25, clock: "free", end: "all", depth: "study", tab: "why", pinned: "gait",
-    camera: "2", hidden: ["panel", "card"], page_number: 3, is_lit: true,
+    camera: "2", hidden: ["panel", "card"], lang: "fr", page_number: 3, is_lit: true,
   };
   const ofViews = {
     experiments: { experiment: new URLSearchParams("alpha=0.1;0.3&name=A %26 B"), report: "c" },

@@ -7,10 +7,9 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute
 
-from app.api.compression import CompressedContent
 from app.api.deps import Services
 from app.api.descriptions import as_sentence
-from app.api.pages import page_of
+from app.api.pages import PageContent, page_of
 from app.api.policy import OPERATOR, WATCH, GuardedPage, RoutePolicy, policy
 from app.api.problems import problem
 from app.api.stage_paths import stage_of
@@ -22,7 +21,7 @@ from app.features.classroom.rooms import Rooms
 from app.storage.errors import NotFound
 
 
-def routes(page: CompressedContent) -> list[BaseRoute]:
+def routes(page: PageContent) -> list[BaseRoute]:
     """Return the routes of lessons, `/l/ID` and its sheet, and of rooms, `/r/CODE` and `/r/CODE/`.
 
     The stage of an open room serves the dashboard at `/r/CODE/`; what is left of it is other

@@ -2,14 +2,13 @@
 
 from starlette.routing import BaseRoute
 
-from app.api.compression import CompressedContent
-from app.api.pages import page_of
+from app.api.pages import PageContent, page_of
 from app.api.policy import GuardedPage, RoutePolicy
 from app.features.tournaments.access import WATCH_TOURNAMENT
 from app.features.tournaments.tournaments import Tournaments
 
 
-def routes(page: CompressedContent) -> list[BaseRoute]:
+def routes(page: PageContent) -> list[BaseRoute]:
     """Return the route of the page of a tournament, `/t/ID`.
 
     Args:

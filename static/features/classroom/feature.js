@@ -2,6 +2,7 @@
 // address names: a question or a task, and the way to the next one. All else is loaded when it is opened.
 import { computed, effect, untracked } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
+import { t } from "../../js/format.js";
 import { pending, resume, resumeRun, setShared } from "../../js/actions.js";
 import { earlyEndOf } from "../../js/narrative/moment.js";
 import { change, page } from "../../js/page-state.js";
@@ -52,7 +53,7 @@ export const cardNumber = computed(() => {
 function saidOn(number) {
   if (linked.value === null) return saidBy(first.value[number - 1]);
   const { title, ask } = linked.value.cards[number - 1];
-  return { title: title ?? `Card ${number}`, text: ask?.text ?? "", press: null };
+  return { title: title ?? t("Card {number}", { number }), text: ask?.text ?? "", press: null };
 }
 
 /** What the cards say now, for those who read all of them. */
@@ -96,18 +97,21 @@ export function openLesson() {
 
 /** Of a run that ended too early. @param {Run} run @returns {Said} */
 function ofEarlyEnd(run) {
-  const title = `The ${run.kind} ${earlyEndOf(run)?.verb}.`;
+  const verb = earlyEndOf(run)?.verb ?? "";
+  const isRace = run.kind === "race";
+  const title = t("The {run} {verb}.", { run: isRace ? t("race") : t("training"), verb });
   if (run.can_resume && isOperator.value) {
     const isHeld = Boolean(pending.value[run.id]) || isAway.value;
-    return { title, text: "It can go on.", press: { label: "Go on", run: () => resumeRun(run), isHeld } };
+    return { title, text: t("It can go on."), press: { label: t("Go on"), run: () => resumeRun(run), isHeld } };
   }
-  const again = run.kind === "race" ? goTo("ready", () => keep({ race: null })) : restart;
-  return { title, text: "", press: { label: run.kind === "race" ? "Back to the start" : "Begin again", run: again } };
+  const again = isRace ? goTo("ready", () => keep({ race: null })) : restart;
+  return { title, text: "", press: { label: isRace ? t("Back to the start") : t("Begin again"), run: again } };
 }
 
 /** Of a run that waits for a person to let it go on. @param {Run} run @returns {Said} */
 const ofPause = (run) => ({
-  title: `The ${run.kind} is paused.`, text: "", press: { label: "Go on", run: resume, isHeld: isAway.value },
+  title: run.kind === "race" ? t("The race is paused.") : t("The training is paused."), text: "",
+  press: { label: t("Go on"), run: resume, isHeld: isAway.value },
 });
 
 /** Of a run that does not go on by itself; null of others. @param {Run} run */
@@ -119,7 +123,7 @@ function ofHalt(run) {
 
 /** While the server is away a card waits; a vote does not need it. @param {Said} said @returns {Said} */
 const ofAway = ({ title, press }) => ({
-  title, text: "The server is away. The lesson goes on when it is back.", press: press && { ...press, isHeld: true },
+  title, text: t("The server is away. The lesson goes on when it is back."), press: press && { ...press, isHeld: true },
 });
 
 /** What a card says: first of all what keeps its promise from the screen, and the press that mends it. */
@@ -132,11 +136,12 @@ function saidBy(firstCard) {
   const said = firstCard.say();
   if (run === null || firstCard.holds?.()) return said;
   if (!isInPicture(run)) {
-    return { ...said, press: { label: `Show the ${firstCard.of}`, run: () => show(run), isHeld: isComing(run) } };
+    const label = run.kind === "race" ? t("Show the race") : t("Show the practice");
+    return { ...said, press: { label, run: () => show(run), isHeld: isComing(run) } };
   }
   const tabs = ["board", ...(firstCard.shows === LEARNING ? ["train"] : [])];
   const isOnBoard = !isPanelHidden.value && tabs.includes(tab.value);
-  return isOnBoard ? said : { ...said, press: { label: "To the board", run: () => openTab("board") } };
+  return isOnBoard ? said : { ...said, press: { label: t("To the board"), run: () => openTab("board") } };
 }
 
 // ---- what turns the cards
@@ -222,7 +227,7 @@ function CardBar() {
   return html`
     <section class="card-bar" aria-label="Lesson" ref=${bar}>
       <span class="card-number">
-        <span class="sr-only">Card </span>${cardNumber}<span class="of"> of </span>${total}
+        <span class="sr-only">Card${" "}</span>${cardNumber}<span class="of">${" "}of${" "}</span>${total}
       </span>
       <p aria-live="polite"><b>${shown.title}</b>${" "}<span>${shown.text}</span></p>
       ${linked.value
@@ -272,13 +277,13 @@ const FirstLesson = () => html`
 /** @type {Partial<Feature>} */
 export default {
   menu: [
-    { title: "Lessons", order: 30, group: "class", href: "#lessons" },
+    { title: t("Lessons"), order: 30, group: "class", href: "#lessons" },
     {
-      title: "Open a room…", order: 31, group: "class", for: "operator", dialog: "rooms",
+      title: t("Open a room…"), order: 31, group: "class", for: "operator", dialog: "rooms",
       call: "lessons/list.js#askForRoom",
     },
     {
-      title: () => (card.value ? "Hide the lesson" : "The first lesson"), order: 33, group: "help",
+      title: () => (card.value ? t("Hide the lesson") : t("The first lesson")), order: 33, group: "help",
       run: () => (card.peek() ? closeLesson : openLesson)(),
     },
   ],

@@ -4,7 +4,7 @@
 import { computed } from "@preact/signals";
 import { adopt, attempt, pending } from "../../js/actions.js";
 import { startRace, startTraining } from "../../js/api.js";
-import { count, metres, percentage, whole } from "../../js/format.js";
+import { decimal, metres, percentage, t, whole } from "../../js/format.js";
 import { narrative } from "../../js/headline.js";
 import { distanceOf, earlyEndOf, isShownToEnd } from "../../js/narrative/moment.js";
 import { clock, phase, raceInView, raceScene, shownRun, trainingInView } from "../../js/on-stage.js";
@@ -102,7 +102,8 @@ export const candidates = computed(() => {
 
 export const vote = computed(() => lessonProgress.value.vote);
 
-const votedTitle = () => (vote.value === null ? "" : agentOf(vote.value).title);
+const voteInWords = () =>
+  t("Your vote: {robot}.", { robot: vote.value === null ? "" : agentOf(vote.value).title });
 
 /** Vote for an agent, until the race is decided in the picture. @param {string} agent */
 export function voteFor(agent) {
@@ -197,11 +198,12 @@ const tuneIt = async (changes) => {
 /** @returns {Press} */
 function pressOfTest() {
   const alpha = alphaNow();
-  if (!steers.value) return { label: "See its newest test", run: goTo("newest", showNewest) };
-  if (alpha === null) return { label: "Next", run: goTo("newest", goOn) };
-  if (!isActive(practice.value)) return { label: "Practise again", run: startPractice, isHeld: isStarting() };
+  if (!steers.value) return { label: t("See its newest test"), run: goTo("newest", showNewest) };
+  if (alpha === null) return { label: t("Next"), run: goTo("newest", goOn) };
+  if (!isActive(practice.value)) return { label: t("Practise again"), run: startPractice, isHeld: isStarting() };
   const other = alpha < (HIGH + LOW) / 2 ? HIGH : LOW;
-  return { label: `Set α to ${other}`, run: goTo("changed", () => tuneIt({ alpha: other })), isHeld: isAway.value };
+  const label = t("Set α to {alpha}", { alpha: decimal(other) });
+  return { label, run: goTo("changed", () => tuneIt({ alpha: other })), isHeld: isAway.value };
 }
 
 /** Practise faster, and then as fast as it can be computed. @returns {Press} */
@@ -209,26 +211,26 @@ function pressOfChange() {
   const pace = practice.value && presentRates(practice.value).pace;
   const isFast = pace === FASTER || pace === "max";
   return {
-    label: isFast ? "As fast as it can" : "Practise faster", run: () => tuneIt({ pace: isFast ? "max" : FASTER }),
+    label: isFast ? t("As fast as it can") : t("Practise faster"), run: () => tuneIt({ pace: isFast ? "max" : FASTER }),
     isHeld: isAway.value || pace === "max",
   };
 }
 
 /** @returns {Press} */
 function pressOfNewest() {
-  if (!isActive(practice.value) || !steers.value) return { label: "On to the race", run: goTo("vote") };
-  return { label: "Finish the practice", run: goTo("vote", () => tuneIt({ pace: "max" })), isHeld: isAway.value };
+  if (!isActive(practice.value) || !steers.value) return { label: t("On to the race"), run: goTo("vote") };
+  return { label: t("Finish the practice"), run: goTo("vote", () => tuneIt({ pace: "max" })), isHeld: isAway.value };
 }
 
 /** @returns {Press | null} */
 function pressOfVote() {
   const toWatch = race.value ?? raceToWatch.value;
   if (toWatch && (!isInPicture(toWatch) || !mayStart.value)) {
-    return { label: "Watch the race", run: showRace(toWatch), isHeld: isComing(toWatch) };
+    return { label: t("Watch the race"), run: showRace(toWatch), isHeld: isComing(toWatch) };
   }
   if (!mayStart.value) return null;
   const isHeld = isStarting() || toWatch !== null || !hasTable(practice.value);
-  return { label: "Start the race", run: startItsRace, isHeld };
+  return { label: t("Start the race"), run: startItsRace, isHeld };
 }
 
 /** Look at the robot that has thought longest, and back at all. @returns {Press} */
@@ -236,7 +238,7 @@ function pressOfRace() {
   const [most] = (standings.value ?? []).toSorted((a, b) => b.spent.thought - a.spent.thought);
   const isClose = most !== undefined && page.camera.value === String(most.lane + 1);
   return {
-    label: isClose || !most ? "Look at all" : `Look at ${most.title}`, isHeld: !most,
+    label: isClose || !most ? t("Look at all") : t("Look at {robot}", { robot: most.title }), isHeld: !most,
     run: () => (page.camera.value = isClose ? "directed" : String(most.lane + 1)),
   };
 }
@@ -261,19 +263,19 @@ const learner = () => agentOf(practice.value?.config.agent ?? served().defaults.
 const simulated = ({ config }) => config.lanes.filter(({ agent }) => agentOf(agent).steps_ahead)
   .map(({ agent }, n) => {
     const { title, steps_ahead } = agentOf(agent);
-    const moves = whole(simulatedPerDecision(steps_ahead ?? 0, config));
-    return n ? `${title} ${moves}` : `${title} simulates ${moves} moves`;
+    const moves = simulatedPerDecision(steps_ahead ?? 0, config);
+    return n ? `${title} ${whole(moves)}` : t("{robot} simulates {moves} moves", { robot: title, moves });
   }).join(", ");
 
 /** A robot that has thought for more of its time is told to have done so. */
 const MUCH = 0.5;
-
 /** What each robot did until the time-out: "Greedy: 36 steps of 10 mm". @param {Standing} row */
 function workInWords(row) {
   const { title, made, spent: { thought, walked } } = row;
   const share = thought / Math.max(thought + walked, Number.MIN_VALUE);
-  if (share > MUCH) return `${title} thought ${percentage(share)} of the time.`;
-  return `${title}: ${count(made, "step")} of ${Math.round((1000 * distanceOf(row)) / Math.max(made, 1))}\u00a0mm.`;
+  if (share > MUCH) return t("{robot} thought {share} of the time.", { robot: title, share: percentage(share) });
+  const length = Math.round((1000 * distanceOf(row)) / Math.max(made, 1));
+  return t("{robot}: {made} {made|step|steps} of {length}\u00a0mm.", { robot: title, made, length });
 }
 
 export const LEARNING = "[aria-labelledby=learning-title]";
@@ -282,30 +284,32 @@ export const LEARNING = "[aria-labelledby=learning-title]";
 export const FIRST = [
   {
     name: "start", shows: ".stage", say: () => {
-      const text = `${learner()} will try moves and keep what each was worth. The others compute before each step.`;
+      const text = t("{robot} will try moves and keep what each was worth. The others compute before each step.",
+        { robot: learner() });
       const run = practiceToWatch.value;
       if (!run && !mayStart.value) {
-        return { title: "Who will win?", text: "It goes on once a practice is started here.", press: null };
+        return { title: t("Who will win?"), text: t("It goes on once a practice is started here."), press: null };
       }
       const isHeld = isStarting() || lessonProgress.value.practice !== null;
       return {
-        title: "It knows nothing yet.", text,
-        press: run ? { label: "Watch it practise", run: showPractice(run), isHeld: isComing(run) }
-          : { label: "Let it practise", run: startPractice, isHeld },
+        title: t("It knows nothing yet."), text,
+        press: run ? { label: t("Watch it practise"), run: showPractice(run), isHeld: isComing(run) }
+          : { label: t("Let it practise"), run: startPractice, isHeld },
       };
     },
   },
   {
     name: "tries", of: "practice", shows: ".stage", comes: hasPracticeBegun, say: () => ({
-      title: "It tries moves.", text: "At random, as yet. What did this step bring?",
+      title: t("It tries moves."), text: t("At random, as yet. What did this step bring?"),
       press: explainingTab.value === null
-        ? { label: "Next", run: goTo("test") } : { label: "Explain this step", run: goTo("step", explain) },
+        ? { label: t("Next"), run: goTo("test") } : { label: t("Explain this step"), run: goTo("step", explain) },
     }),
   },
   {
     name: "step", of: "practice", shows: ".why-tab", holds: () => tab.value === explainingTab.value, say: () => ({
-      title: "One step.", text: "What it brought changes the value of this move in the table, by a share: α.",
-      press: { label: "On with the practice", run: goTo("test", goOn) },
+      title: t("One step."),
+      text: t("What it brought changes the value of this move in the table, by a share: α."),
+      press: { label: t("On with the practice"), run: goTo("test", goOn) },
     }),
   },
   {
@@ -313,19 +317,22 @@ export const FIRST = [
       const [first] = tests();
       const isOver = steers.value && !isActive(practice.value);
       return {
-        title: first ? `First test: ${metres(first.distance_m)}.` : "Tests come every 50 steps.",
-        text: isOver ? "α changes only while it practises."
-          : `α, the share of a new try that counts, is ${alphaNow() ?? "fixed"}.`,
+        title: first ? t("First test: {distance}.", { distance: metres(first.distance_m) })
+          : t("Tests come every 50 steps."),
         press: pressOfTest(),
+        text: isOver ? t("α changes only while it practises.")
+          : t("α, the share of a new try that counts, is {alpha}.", { alpha: decimal(alphaNow() ?? t("fixed")) }),
       };
     },
   },
   {
     name: "changed", of: "practice", shows: LEARNING, isThere: () => steers.value, say: () => {
       const step = alphaChange()?.step;
+      const alpha = decimal(alphaNow() ?? "");
       return {
-        title: `α is ${alphaNow()}${step === undefined ? "" : ` from step ${whole(step)}`}.`,
-        text: "The curve has its mark. Will the next test go farther?", press: pressOfChange(),
+        title: step === undefined ? t("α is {alpha}.", { alpha })
+          : t("α is {alpha} from step {step}.", { alpha, step }),
+        text: t("The curve has its mark. Will the next test go farther?"), press: pressOfChange(),
       };
     },
   },
@@ -336,53 +343,55 @@ export const FIRST = [
       // The start line, too, is shown to its end.
       : practice.value !== null && isShownToEnd(scene.value, practice.value.id)),
     say: () => {
-      const newest = tests().at(-1);
+      const now = metres(tests().at(-1)?.distance_m);
       const before = tests().findLast(({ step }) => step <= (alphaChange()?.step ?? 0));
       return {
-        title: `Newest test: ${metres(newest?.distance_m)}${before ? `, before ${metres(before.distance_m)}` : ""}.`,
-        text: before ? "By α, or by practice? One robot does not tell." : "It has a table now.", press: pressOfNewest(),
+        title: before ? t("Newest test: {now}, before {before}.", { now, before: metres(before.distance_m) })
+          : t("Newest test: {now}.", { now }),
+        press: pressOfNewest(),
+        text: before ? t("By α, or by practice? One robot does not tell.") : t("It has a table now."),
       };
     },
   },
   {
     name: "vote", shows: ".prediction", comes: hasRaceBegun, say: () => ({
-      title: "Who is ahead at time-out?", text: "In the race the clock runs on while a robot thinks.", press: null,
+      title: t("Who is ahead at time-out?"), press: null,
+      text: t("In the race the clock runs on while a robot thinks."),
     }),
   },
   {
     name: "ready", shows: ".stage", say: () => ({
-      title: `Your vote: ${votedTitle()}.`,
+      title: voteInWords(), press: pressOfVote(),
       text: mayStart.value || (race.value ?? raceToWatch.value)
-        ? "The first robot to use its 50 steps ends the race." : "It goes on once a race is started here.",
-      press: pressOfVote(),
+        ? t("The first robot to use its 50 steps ends the race.") : t("It goes on once a race is started here."),
     }),
   },
   {
     name: "race", of: "race", shows: ".board", comes: () => hasRaceBegun() && (vote.value !== null || isTimedOut.value),
     say: () => ({
-      title: "Hatched is thinking.", text: race.value ? `${simulated(race.value)} before each step.` : "",
-      press: pressOfRace(),
+      title: t("Hatched is thinking."), press: pressOfRace(),
+      text: race.value ? t("{robots} before each step.", { robots: simulated(race.value) }) : "",
     }),
   },
   {
     name: "finish", of: "race", shows: ".board", comes: isDecided, say: () => ({
       title: `${lessonProgress.value.outcome?.headline ?? narrative.value.headline}.`,
-      text: `${vote.value === null ? "" : `Your vote: ${votedTitle()}. `}What did each do with its time?`,
-      press: { label: "Why?", run: goTo("why") },
+      text: [vote.value === null ? "" : voteInWords(), t("What did each do with its time?")].join(" ").trim(),
+      press: { label: t("Why?"), run: goTo("why") },
     }),
   },
   {
     name: "why", of: "race", shows: ".board", say: () => ({
-      title: "Longest way, not most steps.",
-      text: lessonProgress.value.outcome?.work ?? "",
-      press: { label: "Your turn", run: goTo("turn") },
+      title: t("Longest way, not most steps."), text: lessonProgress.value.outcome?.work ?? "",
+      press: { label: t("Your turn"), run: goTo("turn") },
     }),
   },
   {
     name: "turn", shows: ".foot", say: () => ({
-      title: "Your turn.", text: mayStart.value
-        ? "Would more practice win? Change one thing, and race again." : "Follow a step of the race, with its numbers.",
-      press: { label: mayStart.value ? "Change it" : "Follow it", run: goTo("done", () => {
+      title: t("Your turn."), text: mayStart.value
+        ? t("Would more practice win? Change one thing, and race again.")
+        : t("Follow a step of the race, with its numbers."),
+      press: { label: mayStart.value ? t("Change it") : t("Follow it"), run: goTo("done", () => {
         setDepth("try");
         openTab(mayStart.peek() ? "train" : explainingTab.peek() ?? "board");
       }) },

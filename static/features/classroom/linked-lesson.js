@@ -1,6 +1,7 @@
 // The lesson that the address names, which most visits do not have: it presets the page, and its buttons read a card in
 // full and turn the cards.
 import { effect, signal } from "@preact/signals";
+import { t } from "../../js/format.js";
 import { change, page } from "../../js/page-state.js";
 import { isLifted, restriction } from "../../js/settings.js";
 import { html } from "../../js/components/elements.js";
@@ -34,7 +35,7 @@ export function followLinkedLesson() {
   effect(() => {
     // A card that runs nothing has no settings.
     restriction.value = linkedCard.value?.go
-      ? { bounds: linkedCard.value.may ?? {}, reason: "The lesson's card sets" } : null;
+      ? { bounds: linkedCard.value.may ?? {}, reason: t("The lesson's card sets") } : null;
   });
   effect(() => {
     const id = page.lesson.value;

@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { keepAnswer } from "../../js/api.js";
 import { getExplanation, getTable } from "./api.js";
-import { count, inMillimetres, THIN_SPACE } from "../../js/format.js";
+import { decimal, inMillimetres, t, THIN_SPACE } from "../../js/format.js";
 import { isPlaying, shownRun } from "../../js/on-stage.js";
 import { connection, runs, scene } from "../../js/store.js";
 import { cellName } from "../../js/training.js";
@@ -131,7 +131,7 @@ export function stateCells(index, { pairs, cell_names }) {
 }
 
 /** @param {number[]} legs */
-export const legsInWords = (legs) => `legs ${legs.join("+")}`;
+export const legsInWords = (legs) => t("legs {legs}", { legs: legs.join("+") });
 
 /**
  * Where the feet are: "legs 1+4 home, legs 2+5 front left".
@@ -147,7 +147,7 @@ export const stateInWords = (cells, grid) =>
  * @param {FootCells} grid
  */
 export const moveInWords = ([pair, cell], grid) =>
-  `${legsInWords(grid.pairs[pair])} to ${cellName(grid, cell, " mm")}`;
+  t("legs {legs} to {cell}", { legs: grid.pairs[pair].join("+"), cell: cellName(grid, cell, " mm") });
 
 /** The column of a move in a table. @type {(move: Move, grid: FootCells) => number} */
 export const columnOf = ([pair, cell], { cell_names }) => pair * cell_names.length + cell;
@@ -225,13 +225,14 @@ export function cellInWords(shown, row, column) {
   const visits = shown.visits[row][column] ?? 0;
   const isBest = columnOf(shown.best[row], shown) === column;
   const worth = {
-    stays: "no move: they stand there",
-    untried: value === 0 ? "never tried" : `never tried; taken for ${inMillimetres(value)}`,
-    tried: `${inMillimetres(value)}, tried ${visits === 1 ? "once" : count(visits, "time")}`,
+    stays: t("no move: they stand there"),
+    untried: value === 0 ? t("never tried") : t("never tried; taken for {value}", { value: inMillimetres(value) }),
+    tried: visits === 1 ? t("{value}, tried once", { value: inMillimetres(value) })
+      : t("{value}, tried {visits} times", { value: inMillimetres(value), visits }),
   }[kind];
   const isKnown = shown.visits[row].some(Boolean);
-  const remark = isKnown ? `best here: ${best}` : "nothing tried here";
-  const about = isBest && kind === "tried" ? "the best move here" : remark;
+  const remark = isKnown ? t("best here: {move}", { move: best }) : t("nothing tried here");
+  const about = isBest && kind === "tried" ? t("the best move here") : remark;
   return { state: stateInWords(cells, shown), move: moveInWords(move, shown), worth, about };
 }
 
@@ -247,14 +248,14 @@ export function ruleNumber(value) {
   const text = Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
   const [mantissa, exponent] = text.split("e");
   const raised = exponent?.replace(/[-\d]/g, (sign) => SUPERSCRIPTS["-0123456789".indexOf(sign)]);
-  return mantissa.replace("-", "−") + (raised ? ` · 10${raised}` : "");
+  return decimal(mantissa).replace("-", "−") + (raised ? ` · 10${raised}` : "");
 }
 
 /** A value of the table, to the digit at which another one differs. @type {(value: number, other: number) => string} */
 export function comparedNumber(value, other) {
   for (let digits = 5; digits <= 17; digits += 1) {
     const [first, second] = [value, other].map((number) => number.toPrecision(digits));
-    if (first !== second || digits === 17) return `${first.replace("-", "−")}${THIN_SPACE}m`;
+    if (first !== second || digits === 17) return `${decimal(first).replace("-", "−")}${THIN_SPACE}m`;
   }
   return String(value);
 }

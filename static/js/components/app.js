@@ -1,4 +1,5 @@
 // The page: header, the views and messages.
+import { t } from "../format.js";
 import { announcement } from "../headline.js";
 import { computed, effect } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
@@ -113,7 +114,7 @@ function LoadedView({ name }) {
 
 /** The views to which the header leads: [name, title, address]. */
 const headerViews = computed(() => [
-  ["race", "Race", "#"], ["runs", "Runs", "#runs"],
+  ["race", t("Race"), "#"], ["runs", t("Runs"), "#runs"],
   ...Object.entries(partsOf("views")).filter(([, { isInHeader }]) => isInHeader)
     .map(([name, { title }]) => [name, title, `#${name}`]),
 ]);
@@ -173,17 +174,22 @@ function More() {
   `;
 }
 
+/** @type {Record<string, string>} */
+const CONNECTIONS = {
+  "connecting": t("connecting"), "reconnecting": t("reconnecting"), "no access": t("no access"),
+};
+
 function Connection() {
   // A page without access is not about to be connected.
   const state = isLockedOut.value ? "no access" : connection.value;
-  const watching = viewers.value ? html`${viewers.value}<span class="roomy"> watching</span>` : "connected";
+  const watching = viewers.value ? html`${viewers.value}<span class="roomy"> watching</span>` : t("connected");
   return html`
     <p class=${`live ${state.replace(" ", "-")}`} role="group" aria-label="Connection">
       <span class="dot" aria-hidden="true"></span>
       ${state === "live"
         ? html`<span><span class="sr-only">connected, </span>${watching}</span>`
         // On a phone it would push the menu over the edge; what is lost is told where it is shown.
-        : html`<span class=${isPhone.value && !isLockedOut.value ? "sr-only" : ""}>${state}</span>`}
+        : html`<span class=${isPhone.value && !isLockedOut.value ? "sr-only" : ""}>${CONNECTIONS[state]}</span>`}
     </p>
   `;
 }

@@ -2,7 +2,7 @@
 import { setStage } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
-import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
+import { clockTime, count, decision, metres, sentence, t, whole } from "../format.js";
 import { narrative, whyMarching } from "../headline.js";
 import { isLoser, isOver, isTimedOut, standings, timeline } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
@@ -21,10 +21,9 @@ import { Loaded, Slot } from "../features.js";
 import { LearningChart, RaceChart } from "./run-charts.js";
 
 /** @import { Standing } from "../race.js" */
-/** @import { Changed, Clock, LaneConfig } from "../types.js" */
+/** @import { Changed, Clock, LaneConfig, Run } from "../types.js" */
 
 const loadFiles = () => import("./run-files.js").then(({ RunFiles }) => RunFiles);
-
 export const Board = () => (standings.value === null && shownRun.value?.kind === "training"
   ? html`<${PracticeBoard} />` : html`<${RaceBoard} />`);
 
@@ -57,9 +56,8 @@ function RaceBoard() {
   `;
 }
 
-/** Whether small print is shown: those who watch a race that is over read its result, and have read it before. */
+/** Whether small print is shown: who watches a race that is over reads its result, and has read it before. */
 const isToldAll = () => !isProjected.value && (isAtLeast("try") || !isTimedOut.value);
-
 // ---- the lanes
 
 /** @param {{ rows: Standing[] }} props */
@@ -96,12 +94,12 @@ function Standings({ rows }) {
 
 /** Disturbances of the race, and the race of which it is a branch. */
 function BranchWords() {
-  const race = raceInView.value;
+  const { value: race } = raceInView;
   const branch = race?.config.branch_from;
   const happens = joinedBySteps(race ? disturbancesOf(race) : []).map(inTime).join("; ");
   if (!branch) return happens && html`<p class="happened">${sentence(happens)}.</p>`;
   const original = originalRace.value;
-  const title = original?.name || "another race";
+  const title = original?.name || t("another race");
   return html`
     <p class="happened">
       The same as <a href=${`#runs?search=${branch.race_id}`}>${title}</a> before step ${branch.step + 1}.
@@ -111,8 +109,8 @@ function BranchWords() {
 }
 
 function distanceTitle() {
-  if (isTimedOut.value) return html`<span class="sr-only">Distance </span>At time-out`;
-  return ["halting", "left off"].includes(narrative.value.state) ? "Reached" : "Now";
+  if (isTimedOut.value) return html`<span class="sr-only">Distance${" "}</span>At time-out`;
+  return ["halting", "left off"].includes(narrative.value.state) ? t("Reached") : t("Now");
 }
 
 function BestKnown() {
@@ -176,7 +174,7 @@ function LaneName({ row }) {
   const isFollowed = page.camera.value === target;
   return html`
     <button class="lane-name" aria-pressed=${isFollowed ? "true" : "false"}
-      title=${isFollowed ? "All robots again" : `Follow with the camera, as key ${target} does`}
+      title=${isFollowed ? t("All robots again") : t("Follow with the camera, as key {target} does", { target })}
       onClick=${() => aim(isFollowed ? "directed" : target)}>${name}</button>
   `;
 }
@@ -185,35 +183,38 @@ function LaneName({ row }) {
 function noteOf({ agent, training_id }) {
   if (learns(agent)) {
     const training = runs.value.get(training_id ?? "");
-    return training ? `${count(practisedSteps(training), "step")} of practice` : "learns as it races";
+    return training ? inPractice(training) : t("learns as it races");
   }
   const { steps_ahead } = agentOf(agent);
   const config = raceInView.value?.config;
-  if (!steps_ahead || !config) return "";
-  return `${count(simulatedPerDecision(steps_ahead, config), "move")} a step`;
+  const moves = steps_ahead && config ? simulatedPerDecision(steps_ahead, config) : 0;
+  return moves ? t("{moves} {moves|move|moves} a step", { moves }) : "";
 }
 
-/** Whether a lane's activity is told: what is unusual always, the rest where there is room for it. */
-/** @param {Standing} row */
+/** @param {Run} run */
+const inPractice = (run) => t("{steps} {steps|step|steps} of practice", { steps: practisedSteps(run) });
+
+/** Whether a lane's activity is told: what is unusual always, the rest where there is room. @param {Standing} row */
 const isActivityTold = (row) =>
   isAtLeast("study") || row.failure || row.isHalted || (row.isThinking && !isOver.value && isAtLeast("try"));
 
 /** What is told below the strip, each with its style. @param {Standing} row @returns {[string, unknown][]} */
 function linesBelow(row) {
   const isDeep = isAtLeast("study");
-  /** @type {[string, unknown][]} */
-  const lines = [];
+  const lines = /** @type {[string, unknown][]} */ ([]);
   if (isActivityTold(row)) {
     lines.push(["dim", html`${row.hasCrossed && isDeep && html`<${Icon} name="flag" />`}${activityOf(row)}`]);
   }
   if (postureOf(row)) lines.push(["happened", postureOf(row)]);
   if (row.original && isAtLeast("try")) {
     const { finished_m, total_m } = row.original;
-    lines.push(["dim", `Original: ${metres(finished_m)} at time-out, total ${metres(total_m)}`]);
+    const far = { finished: metres(finished_m), total: metres(total_m) };
+    lines.push(["dim", t("Original: {finished} at time-out, total {total}", far)]);
   }
-  if (isDeep && row.plans_with) lines.push(["dim", `plans with the ${planningModelTitle(row.plans_with)}`]);
+  const model = row.plans_with && planningModelTitle(row.plans_with);
+  if (isDeep && model) lines.push(["dim", t("plans with the {model}", { model })]);
   if (row.isMarching) {
-    lines.push(["marching", html`<b>Marching on the spot${isAtLeast("try") ? ": " : "."}</b>${
+    lines.push(["marching", html`<b>${t("Marching on the spot")}${isAtLeast("try") ? ": " : "."}</b>${
       isAtLeast("try") ? whyMarching(row.agent) : ""}`]);
   }
   return lines;
@@ -226,10 +227,12 @@ const distanceSoFar = (row) => (isOver.value ? null : row.distance_m);
 /** @param {{ row: Standing, ends: Ends }} props */
 function Bars({ row, ends: { elapsed_s, distance_m, finish_m } }) {
   const { walked, thought } = row.spent;
-  const finish = finish_m === null ? "" : ` of ${metres(finish_m)} to the finish line`;
-  const times = `walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
+  const values = { distance: metres(distanceOf(row)), finish: metres(finish_m) };
+  const reached = finish_m === null ? values.distance : t("{distance} of {finish} to the finish line", values);
+  const spent = { walked: clockTime(walked), thought: clockTime(thought) };
+  const times = t("walking {walked}, thinking {thought} (minutes:seconds)", spent);
   return html`
-    <div class="bars" role="img" aria-label=${`${metres(distanceOf(row))}${finish}; ${times}`}>
+    <div class="bars" role="img" aria-label=${`${reached}; ${times}`}>
       <div class="distance-bar">
         <i style=${{ width: percent(shareOf(distanceOf(row), 0, distance_m)) }}></i>
         ${finish_m !== null && html`<b style=${{ left: percent(shareOf(finish_m, 0, distance_m)) }}></b>`}
@@ -247,28 +250,33 @@ const MIN_TURN_DEG = 20;
 
 /** Whether it fell or turned. @param {Standing} standing */
 function postureOf({ fell_at_step, heading_deg }) {
-  const fell = typeof fell_at_step === "number" && `fell at step ${whole(fell_at_step + 1)}`;
+  const fell = typeof fell_at_step === "number" && t("fell at step {step}", { step: fell_at_step + 1 });
   const turn = heading_deg ?? 0;
-  const turned = Math.abs(turn) > MIN_TURN_DEG &&
-    `turned ${Math.round(Math.abs(turn))}° ${turn > 0 ? "left" : "right"}`;
+  const angle = Math.round(Math.abs(turn));
+  const turned = angle > MIN_TURN_DEG &&
+    (turn > 0 ? t("turned {angle}° left", { angle }) : t("turned {angle}° right", { angle }));
   return sentence([fell, turned].filter(Boolean).join(", "));
 }
 
 /** @param {Standing} row */
 function activityOf(row) {
-  if (row.failure) return `Stopped: ${row.failure}`;
+  if (row.failure) return t("Stopped: {reason}", { reason: row.failure });
   if (row.isDone) {
-    const crossed = row.hasCrossed ? ", crossed the finish line" : "";
     const steps = count(row.steps, "step");
-    return row.elapsed_s ? `${steps} in ${clockTime(row.elapsed_s)}${crossed}` : steps;
+    const used = { steps, time: clockTime(row.elapsed_s ?? 0) };
+    if (row.hasCrossed) return t("{steps} in {time}, crossed the finish line", used);
+    return row.elapsed_s ? t("{steps} in {time}", used) : steps;
   }
-  if (row.isHalted) return `${earlyEndOf(raceInView.value)?.word ?? "Stopped"} at step ${row.step}`;
-  const step = `Step ${row.step} of ${row.steps}`;
-  if (isOver.value && row.step) return `${step} at time-out`;
-  if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
-  return row.step ? step : agentSummary(row.agent, row.training_id);
+  const { step, steps } = row;
+  const end = earlyEndOf(raceInView.value)?.word ?? t("Stopped");
+  if (row.isHalted) return t("{end} at step {step}", { end, step });
+  if (isOver.value && step) return t("Step {step} of {steps} at time-out", { step, steps });
+  if (row.isThinking) {
+    const values = { step, steps, futures: row.futures, total: row.futuresTotal };
+    return t("Step {step} of {steps}, thinking: {futures} of {total} simulated", values);
+  }
+  return step ? t("Step {step} of {steps}", { step, steps }) : agentSummary(row.agent, row.training_id);
 }
-
 
 /**
  * Decision rule of an agent, in a few words.
@@ -279,18 +287,17 @@ function agentSummary(agent, trainingId) {
   if (learns(agent)) {
     const training = runs.value.get(trainingId ?? "");
     return training
-      ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
-      : raceInView.value ? "Learns while it races" : "Practises, then looks up its table";
+      ? t("{practice}, then looks up its table", { practice: inPractice(training) })
+      : raceInView.value ? t("Learns while it races") : t("Practises, then looks up its table");
   }
   const { description, steps_ahead } = agentOf(agent);
   if (!steps_ahead) return description;
   const simulated = simulatedPerDecision(steps_ahead, raceInView.value?.config ?? form.value);
-  return `Simulates ${whole(simulated)} moves before each step`;
+  return t("Simulates {moves} {moves|move|moves} before each step", { moves: simulated });
 }
 
-// ---- before the race
+// ---- before the race: the lanes
 
-/** The lanes before the race. */
 function StartList() {
   const race = raceInView.value;
   if (!race && ["loading", "lost"].includes(narrative.value.state)) {
@@ -323,7 +330,7 @@ const Choices = () => html`
 
 function ClockChoice() {
   const about = served().clocks.find(({ name }) => name === clock.value)?.description ?? "";
-  const whose = page.run.value === null ? "For every page. " : "";
+  const whose = page.run.value === null ? `${t("For every page.")} ` : "";
   /** @param {Changed} event */
   const onChange = async ({ target }) => {
     await setStage({ clock: /** @type {Clock} */ (target.value) });
@@ -345,10 +352,10 @@ function ClockChoice() {
 function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
   const robots = lanes.map((lane, n) =>
-    [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
-  const choices = [["directed", "All robots"], ...robots, ["free", "Free camera"]];
+    [String(n + 1), t("Follow {robot}", { robot: "name" in lane ? lane.name : agentOf(lane.agent).title })]);
+  const choices = [["directed", t("All robots")], ...robots, ["free", t("Free camera")]];
   const target = page.camera.value;
-  if (!choices.some(([choice]) => choice === target)) choices.push([target, `Follow lane ${target}`]);
+  if (!choices.some(([choice]) => choice === target)) choices.push([target, t("Follow lane {lane}", { lane: target })]);
   return html`
     <label class="choice" title="What your camera shows; keys 1 to 8 for a robot, C for all, 0 for a free camera">
       <span class="sr-only">Follow</span>

@@ -1,17 +1,18 @@
 // Charts: lines over an axis with a crosshair, zoom, table and files, and the placeholder of a chart without data.
-import { useMemo, useRef, useState } from "preact/hooks";
-import { chartDepth, crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
-import { metres, sentence, whole as wholeNumber } from "../format.js";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import {
+  chartDepth, crosshair, fileNameOf, readIndex, tableOf, thinnedPath, valuesIn, within, zoomBy, zoomOf,
+} from "../chart.js";
+import { metres, sentence, t, whole as wholeNumber } from "../format.js";
 import { cssColour, LineLabels, MarkLines, placeCaptions, roomFor, widthOf } from "./line-labels.js";
 import { isProjected } from "../page.js";
 import { thinned, ticks } from "../scale.js";
 import { served } from "../settings.js";
-import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
 
 /** @import { ComponentChildren } from "preact" */
-/** @import { Line, Mark, Range } from "../chart.js" */
-/** @import { Axis } from "./crosshair.js" */
+/** @import { Axis, Line, Mark, Range } from "../chart.js" */
+/** @import { CrosshairProps } from "./crosshair.js" */
 /** @import { Frame } from "./line-labels.js" */
 /** @import { Toggled } from "../types.js" */
 
@@ -90,6 +91,22 @@ export function Chart(props) {
       `}
     </div>
   `;
+}
+
+/** @type {import("preact").FunctionComponent<CrosshairProps> | null} */
+let LoadedCrosshair = null;
+
+/** Loaded when it is first drawn: who watches has none. @param {CrosshairProps} props */
+function Crosshair(props) {
+  const [, setThere] = useState(LoadedCrosshair !== null);
+  useEffect(() => {
+    if (LoadedCrosshair !== null) return;
+    import("./crosshair.js").then((module) => {
+      LoadedCrosshair = module.Crosshair;
+      setThere(true);
+    }, () => {});
+  }, []);
+  return LoadedCrosshair && html`<${LoadedCrosshair} ...${props} />`;
 }
 
 /** Who watches sees lines, who tries reads them, and who studies has their numbers as well. */
@@ -226,7 +243,10 @@ function useSize() {
 
 /** The line of the best known walk, thin. @param {number} y */
 export const bestKnownMark = (y) =>
-  ({ y, name: "Best known", kind: "best-known", ink: "--dim", text: `best known: ${metres(y)}` });
+  ({
+    y, name: t("Best known"), kind: "best-known", ink: "--dim",
+    text: t("best known: {distance}", { distance: metres(y) }),
+  });
 
 /** Note on the thin line, where its caption has no room. @param {{ distance: number }} props */
 export const BestKnownKey = ({ distance }) => html`
@@ -251,7 +271,8 @@ function ChartMenu({ chart, axis, host }) {
     await saveChart(kind, { ...chart, svg, file: fileNameOf(chart.name) });
   };
   return html`
-    <${FileMenu} label=${`More of ${chart.name}: zoom, download`} kinds=${["png", "svg", "csv"]} save=${save}>
+    <${FileMenu} label=${t("More of {chart}: zoom, download", { chart: chart.name })}
+      kinds=${["png", "svg", "csv"]} save=${save}>
       ${axis.seek && x !== null && html`
         <button class="quiet" onClick=${() => axis.seek?.(x)}>Show this moment: ${chart.x.text(x)}</button>
       `}
@@ -336,7 +357,9 @@ export const Empty = ({ words, shape = "curve" }) => html`
 /** @typedef {"png" | "svg" | "csv"} FileKind */
 
 /** @type {Record<FileKind, string>} */
-const DOWNLOADS = { png: "Download as PNG", svg: "Download as SVG", csv: "Download its numbers as CSV" };
+const DOWNLOADS = {
+  png: t("Download as PNG"), svg: t("Download as SVG"), csv: t("Download its numbers as CSV"),
+};
 
 /**
  * `children` come before the downloads.
@@ -349,7 +372,7 @@ export function FileMenu({ label, kinds, save, children }) {
   /** @param {FileKind} kind */
   const download = (kind) => {
     setProblem("");
-    save(kind).catch(() => setProblem("The file could not be made. Load the page again."));
+    save(kind).catch(() => setProblem(t("The file could not be made. Load the page again.")));
   };
   return html`
     <details class="menu chart-menu">

@@ -2,13 +2,15 @@
 // or Enter seeks; a drag, two fingers, + and − zoom; a double click or 0 shows all.
 import { useRef, useState } from "preact/hooks";
 import {
-  crosshair, indexAfter, intervalAt, movedTo, nearestIndex, pinned, scaledAround, valueAt, zoomFactorOf, zoomOf, zoomTo,
+  crosshair, indexAfter, intervalAt, movedTo, nearestIndex, pinned, readIndex, valueAt, zoomBy, zoomFactorOf,
+  zoomOf, zoomTo,
 } from "../chart.js";
+import { t } from "../format.js";
 import { percent, shareOf } from "../scale.js";
 import { html } from "./elements.js";
 import { cssColour } from "./line-labels.js";
 
-/** @import { Line, Mark, Range } from "../chart.js" */
+/** @import { Axis, Line, Mark, Range } from "../chart.js" */
 
 /** From this share of the width on, the values stand on the left of the crosshair. */
 const FLIP_SHARE = 0.5;
@@ -16,38 +18,6 @@ const FLIP_SHARE = 0.5;
 const DRAG_PX = 6;
 /** A second click within it is a double click. */
 const DOUBLE_CLICK_MS = 250;
-
-/**
- * The axis that a chart's keys, pointer and menu act on.
- * @typedef {object} Axis
- * @property {string} axis
- * @property {number[]} xs where there are values, ascending
- * @property {Range} whole
- * @property {Range} part that is shown
- * @property {number} now the index that is read first
- * @property {((x: number) => unknown) | null} seek
- * @property {{ shown: number, computed: number } | null} reach up to where lines are shown, and to where they can be
- */
-
-/** The index at the crosshair, if it is on this axis and in view; else null. @param {Axis} axis */
-export function readIndex({ axis, xs, part: [low, high] }) {
-  const at = crosshair.value;
-  if (at?.axis !== axis) return null;
-  const index = nearestIndex(xs, at.x);
-  return index >= 0 && xs[index] >= low && xs[index] <= high ? index : null;
-}
-
-/**
- * Zoom by a factor around the crosshair, or around the middle; 0 shows all.
- * @param {Axis} chart
- * @param {number} factor
- */
-export function zoomBy(chart, factor) {
-  const { axis, whole, part, xs } = chart;
-  const index = readIndex(chart);
-  const middle = index === null ? (part[0] + part[1]) / 2 : xs[index];
-  zoomTo(axis, factor ? scaledAround(part, middle, factor) : null, whole);
-}
 
 /** A drawn line or a level, as it is read. @typedef {{ name?: string, color?: string, value: string }} ReadValue */
 /** @typedef {{ name: string, lines: Line[], marks: Mark[], inset: Record<string, number> }} Drawn */
@@ -74,8 +44,8 @@ export function Crosshair(props) {
   };
   return html`
     <div class=${`crosshair ${props.seek ? "seeks" : ""}`} style=${style} tabindex="0" role="slider"
-      aria-label=${`Values of ${name}`} aria-valuemin="0" aria-valuemax=${last} aria-valuenow=${shown}
-      aria-valuetext=${words} ...${onPointer} onFocus=${onFocus}
+      aria-label=${t("Values of {chart}", { chart: name })} aria-valuemin="0" aria-valuemax=${last}
+      aria-valuenow=${shown} aria-valuetext=${words} ...${onPointer} onFocus=${onFocus}
       onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, props, shown)}>
       ${selection && html`<${Selection} from=${Math.min(...selection)} to=${Math.max(...selection)} />`}
       ${index !== null && html`
@@ -98,7 +68,7 @@ const Selection = ({ from, to }) => html`
  */
 function missingAt(reach, position) {
   if (!reach || position <= reach.shown) return "";
-  return position <= reach.computed ? "not shown yet" : "not computed yet";
+  return position <= reach.computed ? t("not shown yet") : t("not computed yet");
 }
 
 /**

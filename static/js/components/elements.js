@@ -3,13 +3,15 @@ import { effect } from "@preact/signals";
 import htm from "htm";
 import { h } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { listed } from "../format.js";
+import { listed, translation } from "../format.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { Gait } from "../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
-export const html = htm.bind(h);
+/** Texts between its tags, and attributes that people read, are looked up in the catalogue of the page's language. */
+/** @type {ReturnType<typeof htm.bind<import("preact").VNode>>} */
+export const html = translation ? translation.tagOf(h) : htm.bind(h);
 
 const SUN = "M8 5.2a2.8 2.8 0 1 0 0 5.6 2.8 2.8 0 0 0 0-5.6";
 const STRAIGHT_RAYS = "M8 1v1.6M8 13.4V15M1 8h1.6M13.4 8H15";

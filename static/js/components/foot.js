@@ -3,7 +3,7 @@ import {
   canStart, dismissProblem, missingLane, pending, primaryAction, problems, runPrimaryAction, secondaryActions,
 } from "../actions.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
-import { percentage, sentence } from "../format.js";
+import { percentage, t } from "../format.js";
 import { ignored, page } from "../page-state.js";
 import { isFootOpen, isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
@@ -74,10 +74,10 @@ function goWhenThere(id, since = performance.now()) {
 
 const busyLabel = () => {
   const { requested, current } = myWork.value ?? {};
-  if (!requested || !current) return "Starting…";
-  if (current.state === "paused") return `${sentence(current.kind)} paused`;
-  if (current.kind !== "training" && scene.value?.kind !== "training") return "Racing…";
-  return requested.kind === "training" ? "Practising…" : "Practising, then racing…";
+  if (!requested || !current) return t("Starting…");
+  if (current.state === "paused") return current.kind === "race" ? t("Race paused") : t("Training paused");
+  if (current.kind !== "training" && scene.value?.kind !== "training") return t("Racing…");
+  return requested.kind === "training" ? t("Practising…") : t("Practising, then racing…");
 };
 
 function MissingLane() {
@@ -120,7 +120,7 @@ export function FoldedFoot() {
 const FootFold = ({ words, of = "" }) => html`
   <button class="secondary compact" aria-expanded=${isFootOpen.value ? "true" : "false"} aria-controls="panel-foot"
     onClick=${() => (isFootOpen.value = !isFootOpen.value)}>
-    ${of && html`<span class="sr-only">${of}: </span>`}<span class="num">${words}</span>
+    ${of && html`<span class="sr-only">${of}:${" "}</span>`}<span class="num">${words}</span>
   </button>
 `;
 

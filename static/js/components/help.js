@@ -1,4 +1,5 @@
 // The help dialog: keys, what the page shows, and where to read on.
+import { t } from "../format.js";
 import { helpOfKeys, Slot } from "../features.js";
 import { helpIsOpen, shortcuts } from "../page.js";
 import { Dialog, html } from "./elements.js";
@@ -8,29 +9,29 @@ import { explainingTab } from "../workspace.js";
 
 /** [key, what it does] */
 const pageKeys = () => [
-  ["Space", "play and pause; the training on the stage too"],
-  [", .", "one robot step back or on, in your replay"],
-  ["[ ]", "to what happened before or next"],
-  ["Home End", "to the start, and to what is computed"],
-  ...(explainingTab.value ? [["E", "explain this step"]] : []),
-  ["1 – 8", "follow the robot in that lane; 0 frees the camera"],
-  ["C", "directed camera: all robots, as the race goes"],
-  ["V", "the same from another side"],
-  ["← →", "in the picture: turn it, with ↑ ↓ too; + − nearer and away"],
-  ["L", "the legs of the robot that is followed; arrows choose, Enter opens"],
-  ["R", "press the main button"],
-  ["D", "show more: Watch, Try, Study"],
-  ["\\", "hide the panel, or show it"],
+  [t("Space"), t("play and pause; the training on the stage too")],
+  [", .", t("one robot step back or on, in your replay")],
+  ["[ ]", t("to what happened before or next")],
+  [t("Home End"), t("to the start, and to what is computed")],
+  ...(explainingTab.value ? [["E", t("explain this step")]] : []),
+  ["1 – 8", t("follow the robot in that lane; 0 frees the camera")],
+  ["C", t("directed camera: all robots, as the race goes")],
+  ["V", t("the same from another side")],
+  ["← →", t("in the picture: turn it, with ↑ ↓ too; + − nearer and away")],
+  ["L", t("the legs of the robot that is followed; arrows choose, Enter opens")],
+  ["R", t("press the main button")],
+  ["D", t("show more: Watch, Try, Study")],
+  ["\\", t("hide the panel, or show it")],
   ...helpOfKeys(),
-  ["?", "show this list; Escape closes what is on top"],
+  ["?", t("show this list; Escape closes what is on top")],
 ];
 
 /** Of a chart that has the focus. */
 const CHART_KEYS = [
-  ["← →", "read the values, in all charts over the same axis; or point, or touch"],
-  ["Enter", "show that moment on the stage, for those who may; or click"],
-  ["+ −", "zoom in and out; or drag, or move two fingers"],
-  ["0", "show all; or click twice"],
+  ["← →", t("read the values, in all charts over the same axis; or point, or touch")],
+  [t("Enter"), t("show that moment on the stage, for those who may; or click")],
+  ["+ −", t("zoom in and out; or drag, or move two fingers")],
+  ["0", t("show all; or click twice")],
 ];
 
 /** @param {{ keys: string[][] }} props */

@@ -2,6 +2,8 @@
 import { useEffect, useRef } from "preact/hooks";
 import { share } from "../actions.js";
 import { menuRows, runRow } from "../features.js";
+import { t } from "../format.js";
+import { LANGUAGES, linkIn } from "../page-state.js";
 import { nextTheme, theme } from "../page.js";
 import { isOperator } from "../selectors.js";
 import { isPanelHidden, toggleHidden } from "../workspace.js";
@@ -11,7 +13,13 @@ import { toggleHelp } from "./keyboard.js";
 /** @import { MenuRow } from "../types.js" */
 
 /** The groups, from the top: their titles by their names. */
-export const MENU_GROUPS = { views: "Views", share: "Share", class: "With a class", page: "This page", help: "Help" };
+export const MENU_GROUPS = {
+  views: t("Views"), share: t("Share"), class: t("With a class"), page: t("This page"), language: t("Language"),
+  help: t("Help"),
+};
+
+/** @type {Record<string, string>} */
+const THEME_TITLES = { auto: t("Theme: auto"), light: t("Theme: light"), dark: t("Theme: dark") };
 
 /** Where a row is, if it is not everywhere: its class. */
 const [PHONE, WIDE] = /** @type {const} */ (["phone-only", "wide-only"]);
@@ -25,13 +33,14 @@ const [PHONE, WIDE] = /** @type {const} */ (["phone-only", "wide-only"]);
 /** The core's rows; views stand in the header where there is room. @type {(views: ShownView[]) => ShownRow[]} */
 const coreRows = (views) => [
   ...views.map(([, title, href]) => ({ title, href, group: "views", where: PHONE })),
-  { title: "Copy a link to this", icon: "link", group: "share", order: 0, run: share },
+  { title: t("Copy a link to this"), icon: "link", group: "share", order: 0, run: share },
   {
-    title: `${isPanelHidden.value ? "Show" : "Hide"} the panel`, icon: "panel", group: "page", where: WIDE,
+    title: isPanelHidden.value ? t("Show the panel") : t("Hide the panel"), icon: "panel", group: "page", where: WIDE,
     run: () => toggleHidden("panel"),
   },
-  { title: `Theme: ${theme.value}`, icon: theme.value, group: "page", run: nextTheme, stays: true },
-  { title: "Keys and help", group: "help", order: 50, run: toggleHelp },
+  { title: THEME_TITLES[theme.value], icon: theme.value, group: "page", run: nextTheme, stays: true },
+  ...Object.entries(LANGUAGES).map(([code, title]) => ({ title, href: linkIn(code), group: "language" })),
+  { title: t("Keys and help"), group: "help", order: 50, run: toggleHelp },
 ];
 
 /** It is drawn while it is open. @param {{ views: ShownView[] }} props */

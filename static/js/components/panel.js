@@ -1,6 +1,7 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { computed } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { t } from "../format.js";
 import { Loaded, Part, partsOf, Slot } from "../features.js";
 import { moveTold, narrative } from "../headline.js";
 import { phase, shownRun } from "../on-stage.js";
@@ -47,7 +48,7 @@ function Reason() {
   const isOfMove = isMoveTold();
   const { title, words, color } = isOfMove ? ofMove() : ofRun();
   return html`
-    <header class="reason" aria-label=${isOfMove ? "The move" : "How it stands"}>
+    <header class="reason" aria-label=${isOfMove ? t("The move") : t("How it stands")}>
       <div class="says" title=${words && `${title}. ${words}`}>
         <h2 style=${{ "--agent": color }}>
           ${color !== "transparent" && html`<span class="swatch" aria-hidden="true"></span>`}${title}
@@ -71,14 +72,14 @@ function Ways({ isOfMove }) {
   if (isOfMove) return html`<button class="link" onClick=${() => openTab("board")}>‹ Back to the board</button>`;
   return canExplain() && html`
     <button class="link" onClick=${openExplanation}>
-      Explain ${phase.value === "ended" ? "the last" : "this"} step
+      ${phase.value === "ended" ? t("Explain the last step") : t("Explain this step")}
     </button>
   `;
 }
 
 /** @returns {{ title: string, words: string | null, color: string }} */
 function ofMove() {
-  const { title = "Explain this step", reason: words = "", color = "transparent" } = moveTold.value ?? {};
+  const { title = t("Explain this step"), reason: words = "", color = "transparent" } = moveTold.value ?? {};
   return { title, words, color };
 }
 
@@ -113,7 +114,7 @@ const Tabs = () => html`
     </div>
     ${canPin.value && html`
       <button class="quiet square small pin" aria-pressed=${pinnedTab.value ? "true" : "false"} onClick=${togglePin}
-        title=${pinnedTab.value ? "One tab" : "Two tabs beside each other"} aria-label="Pin this tab">
+        title=${pinnedTab.value ? t("One tab") : t("Two tabs beside each other")} aria-label="Pin this tab">
         <${Icon} name="pin" />
       </button>
     `}
@@ -185,10 +186,11 @@ function Body({ name }) {
 
 /** The tab that is pinned beside the open one. @param {{ name: string }} props */
 const Pinned = ({ name }) => html`
-  <section class="pinned" aria-label=${`Pinned: ${tabTitle(name)}`} tabindex="0">
+  <section class="pinned" aria-label=${t("Pinned: {tab}", { tab: tabTitle(name) })} tabindex="0">
     <div class="pinned-head">
       <h2>${tabTitle(name)}</h2>
-      <button class="quiet square small" aria-label=${`Unpin ${tabTitle(name)}`} onClick=${togglePin}>✕</button>
+      <button class="quiet square small" aria-label=${t("Unpin {tab}", { tab: tabTitle(name) })}
+        onClick=${togglePin}>✕</button>
     </div>
     <${Contents} name=${name} />
   </section>

@@ -2,7 +2,7 @@
 // distance in an evaluation against steps of practice.
 import { seekIn } from "../actions.js";
 import { inTime, inWords } from "../disturbances.js";
-import { count, metres, SAME_MOMENT_S, whole } from "../format.js";
+import { count, fixed, metres, SAME_MOMENT_S, t } from "../format.js";
 import { distanceAt } from "../narrative/moment.js";
 import { raceInView, shownRun } from "../on-stage.js";
 import { clipped, shownTime, timeline, timelineProblem } from "../race.js";
@@ -52,8 +52,8 @@ export function RaceChart() {
 
 const invitation = () =>
   raceInView.value
-    ? "The lines start when the robots do."
-    : "Each robot draws a line here as it walks.";
+    ? t("The lines start when the robots do.")
+    : t("Each robot draws a line here as it walks.");
 
 /** @param {{ known: Timeline, time: number }} props */
 function Lines({ known, time }) {
@@ -64,33 +64,37 @@ function Lines({ known, time }) {
     const shown = clipped(lane.points, until);
     const name = laneTitle(configs[number] ?? lane);
     return {
-      name, end: name, color: agentOf(lane.agent).color, xs: shown.map(([t]) => t), ys: shown.map(([, d]) => d),
-      at: (/** @type {number} */ t) => (t > until ? null : distanceAt(lane.points, t)),
+      name, end: name, color: agentOf(lane.agent).color, xs: shown.map(([at]) => at), ys: shown.map(([, d]) => d),
+      at: (/** @type {number} */ at) => (at > until ? null : distanceAt(lane.points, at)),
     };
   });
   const best_m = raceInView.value?.best_known_m ?? null;
   const farthest = largest(lanes.flatMap(({ ys }) => ys), FIRST_VIEW.distance_m);
   const far = Math.max(farthest, ...[known.finish_line_m, best_m ?? 0].filter((m) => m < LEVELS_WITHIN * farthest));
   const ends = lanes.map(({ name, ys }) => `${name} ${metres(ys.at(-1))}`).join(", ");
-  const best = best_m === null ? "" : `; best known ${metres(best_m)}`;
-  const caption = `The race after ${Math.round(until)} seconds: ${ends}${best}.`;
+  const best = bestKnownInWords(best_m);
+  const caption = t("The race after {seconds} seconds: {ends}.", { seconds: until, ends: ends + best });
   const end = Math.min(longest, roundEnd(Math.max(until, FIRST_VIEW.time_s)));
   const last = keptEnd(`${known.id} ${known.clock}`, end);
   const moments = momentsOf(until, last);
   const x = {
-    axis: `race ${known.id}`, max: last, unit: "race time, s",
-    text: (/** @type {number} */ seconds) => `${seconds.toFixed(1)}\u00a0s`,
+    axis: `race ${known.id}`, max: last, unit: t("race time, s"),
+    text: (/** @type {number} */ seconds) => `${fixed(seconds, 1)}\u00a0s`,
   };
   const least = -largest(lanes.flatMap(({ ys }) => ys.map((distance) => -distance)), 0);
   return html`
-    <${Chart} name="the race" label=${caption} x=${x} lines=${lanes} marks=${marksOfRace(known, until, best_m)}
-      y=${{ min: least, max: HEADROOM * far, unit: "m", text: metres, title: "distance, m" }}
+    <${Chart} name=${t("the race")} label=${caption} x=${x} lines=${lanes} marks=${marksOfRace(known, until, best_m)}
+      y=${{ min: least, max: HEADROOM * far, unit: "m", text: metres, title: t("distance, m") }}
       xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known.id)}
       reach=${{ shown: until, computed: longest }}>
       ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
     <//>
   `;
 }
+
+/** @param {number | null} best_m */
+const bestKnownInWords = (best_m) =>
+  (best_m === null ? "" : t("; best known {distance}", { distance: metres(best_m) }));
 
 /** The end of the time axis, of one race under one clock. */
 let longestAxis = { key: "", until: 0 };
@@ -125,13 +129,13 @@ function momentsOf(until, last) {
 function marksOfRace({ finish_line_m, first_finish_s }, until, best_m) {
   /** @type {object[]} */
   const marks = [
-    { y: finish_line_m, color: "--finish", text: "finish line" },
+    { y: finish_line_m, color: "--finish", text: t("finish line") },
     // The moment in the picture.
     { x: until, color: "--ink", width: 1.5 },
   ];
   if (best_m !== null) marks.push(bestKnownMark(best_m));
   if (first_finish_s && until >= first_finish_s - SAME_MOMENT_S) {
-    marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: "time-out" });
+    marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: t("time-out") });
   }
   return marks;
 }
@@ -143,7 +147,7 @@ const MAX_MARKED_POINTS = 45;
 /** The axis shows at least so many steps of a practice that has just begun. */
 const FIRST_STEPS = 50;
 
-const CURVE_INVITATION = "Each evaluation adds a point here, on its way to greedy’s line.";
+const CURVE_INVITATION = t("Each evaluation adds a point here, on its way to greedy’s line.");
 
 export function LearningChart() {
   const learningCurve = curve.value;
@@ -171,7 +175,8 @@ const marksOfCurve = ({ greedy_m, best_known_m, blocks, changes, disturbances, r
     const mark = { color: "--warn", dash: [4, 3] };
     const begins = disturbance.at_step > 0 ? [{ ...mark, x: disturbance.at_step, text: inWords(disturbance) }] : [];
     if (!disturbance.until_step) return begins;
-    return [...begins, { ...mark, x: disturbance.until_step, text: `no ${inWords(disturbance)}` }];
+    const text = t("no {disturbance}", { disturbance: inWords(disturbance) });
+    return [...begins, { ...mark, x: disturbance.until_step, text }];
   }),
 ];
 
@@ -190,16 +195,17 @@ function momentOf(run, from) {
 /** @param {number} y */
 const greedyMark = (y) => ({
   y, name: agentOf("greedy").title, color: agentOf("greedy").color, ink: "--dim", dash: [5, 5],
-  text: `greedy, the line to beat: ${metres(y)}`,
+  text: t("greedy, the line to beat: {distance}", { distance: metres(y) }),
 });
 
 /** @param {NonNullable<typeof curve.value>} curve */
 function captionOf({ points, greedy_m, best_known_m }) {
-  if (points.length < 2) return "Learning curve, without points so far.";
+  if (points.length < 2) return t("Learning curve, without points so far.");
   const last = points[points.length - 1];
-  const greedy = greedy_m ? `; greedy gets ${metres(greedy_m)}` : "";
-  const best = best_known_m === null ? "" : `; best known ${metres(best_known_m)}`;
-  return `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy}${best}.`;
+  const greedy = greedy_m ? t("; greedy gets {distance}", { distance: metres(greedy_m) }) : "";
+  const others = greedy + bestKnownInWords(best_known_m);
+  const values = { distance: metres(last.distance_m), steps: last.step, others };
+  return t("Learning curve: {distance} after {steps} steps{others}.", values);
 }
 
 /** The end of the axis: all of a practice that is over, else a round number that it has reached. */
@@ -224,16 +230,16 @@ function Curve({ known }) {
   const levels = [farthest, best_known_m ?? 0].filter((level) => level < LEVELS_WITHIN * farthest);
   const changed = changesInWords(run.config.agent, known.changes);
   const x = {
-    axis: `practice of ${run.id}`, max: endOfPractice(known), unit: "steps of practice",
+    axis: `practice of ${run.id}`, max: endOfPractice(known), unit: t("steps of practice"),
     text: (/** @type {number} */ step) => count(step, "step"),
   };
   const y = {
     min: -largest(distances.map((distance) => -distance), 0),
     max: HEADROOM * largest(levels),
-    unit: "m", text: metres, title: "distance in 50 steps, m",
+    unit: "m", text: metres, title: t("distance in 50 steps, m"),
   };
   return html`
-    <${Chart} name="the learning curve" label=${captionOf(known)} x=${x} y=${y} lines=${[line]} xs=${steps}
+    <${Chart} name=${t("the learning curve")} label=${captionOf(known)} x=${x} y=${y} lines=${[line]} xs=${steps}
       marks=${marksOfCurve(known)} seek=${seekToStep(known)}>
       ${best_known_m !== null && html`<${BestKnownKey} distance=${best_known_m} />`}
       ${known.disturbances.length > 0 && html`

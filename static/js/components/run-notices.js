@@ -1,6 +1,6 @@
 // Notices in the foot of the panel: a run that was interrupted or failed, or is not on the stage. Loaded when needed.
 import { pending, resumeRun, showOnStage } from "../actions.js";
-import { sentence, whole } from "../format.js";
+import { sentence, t } from "../format.js";
 import { interruptedRun, offStage, shownRun } from "../on-stage.js";
 import { isOperator, mayChange } from "../selectors.js";
 import { isAway } from "../store.js";
@@ -17,7 +17,10 @@ function OffStage() {
   if (!run) return null;
   return html`
     <div class="notice">
-      <p>The stage shows another run; your ${run.kind} goes on without a picture.</p>
+      <p>
+        ${run.kind === "race" ? t("The stage shows another run; your race goes on without a picture.")
+          : t("The stage shows another run; your training goes on without a picture.")}
+      </p>
       <button class="secondary" onClick=${() => showOnStage(run)}>Show on the stage</button>
       <${Problem} at=${run.id} />
     </div>
@@ -37,10 +40,14 @@ function Failure() {
   if (run?.state !== "failed" || !mayChange(run)) return null;
   return html`
     <div class="notice bad">
-      <p><b>The ${run.kind} failed.</b> ${inFormWords(run.error ?? "")}</p>
       <p>
-        Change what it names${isOperator.value && ", or let it go on from its last checkpoint"}. Other runs are not
-        affected.
+        <b>${run.kind === "race" ? t("The race failed.") : t("The training failed.")}</b>
+        ${" "}${inFormWords(run.error ?? "")}
+      </p>
+      <p>
+        ${isOperator.value ? t("Change what it names, or let it go on from its last checkpoint.")
+          : t("Change what it names.")}
+        ${" "}${t("Other runs are not affected.")}
       </p>
       ${isOperator.value && run.can_resume && html`<${ResumeButton} run=${run} />`}
     </div>
@@ -51,11 +58,13 @@ function Failure() {
 function Interrupted() {
   const run = interruptedRun.value;
   if (!run) return null;
-  const { done, total } = run.progress;
-  const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
+  const values = { run: sentence(run.kind), name: run.name, step: run.progress.done, steps: run.progress.total };
+  const words = run.kind === "training"
+    ? t("{run} “{name}” was interrupted at step {step} of {steps}; it is not on the stage.", values)
+    : t("{run} “{name}” was interrupted; it is not on the stage.", values);
   return html`
     <div class="notice">
-      <p><b>${sentence(run.kind)} “${run.name}” was interrupted${where}; it is not on the stage.</b> ${run.error}</p>
+      <p><b>${words}</b> ${run.error}</p>
       <${ResumeButton} run=${run} />
     </div>
   `;

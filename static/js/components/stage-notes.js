@@ -1,5 +1,6 @@
 // Notes over the picture of a run: what ended and how to go on, and what comes next. Loaded with the first of them.
 import { useEffect, useState } from "preact/hooks";
+import { t } from "../format.js";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { narrative } from "../headline.js";
 import { isDecided, isStale } from "../on-stage.js";
@@ -52,8 +53,8 @@ function AnnouncementNote() {
     return () => clearInterval(timer);
   }, [announced]);
   if (!announced) return null;
-  const name = runs.value.get(announced.run_id)?.name ?? "a race";
-  const what = announced.run_id === playback.value?.run_id ? "the same again" : `${name}, again`;
+  const name = runs.value.get(announced.run_id)?.name ?? t("a race");
+  const what = announced.run_id === playback.value?.run_id ? t("the same again") : t("{name}, again", { name });
   return html`
     <div class="stage-note">
       <p role="status">Next: ${what}</p>

@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { isPolling } from "../events.js";
 import { form } from "../form.js";
-import { inMillimetres, tenths } from "../format.js";
+import { inMillimetres, t, tenths } from "../format.js";
 import { narrative } from "../headline.js";
 import {
   aim, clickedCell, clickedNode, closeLegs, directions, drawHere, inspection, isFlat, isProjected, isStill, isTaken,
@@ -106,8 +106,8 @@ const isReplayed = () => isOwn.value && plan.value !== null && !isBuffering.valu
 /** What the picture is while the server is away. */
 function awayInWords() {
   if (!isAway.value) return "";
-  if (isReplayed()) return "Reconnecting. Your replay plays what is loaded.";
-  return isOwn.value ? "Reconnecting. Your replay waits." : "Reconnecting. This is the last picture.";
+  if (isReplayed()) return t("Reconnecting. Your replay plays what is loaded.");
+  return isOwn.value ? t("Reconnecting. Your replay waits.") : t("Reconnecting. This is the last picture.");
 }
 
 const loadLegs = () => import("./leg-menu.js").then(({ Legs }) => Legs);
@@ -224,8 +224,10 @@ function StagePlaceholder({ isLost }) {
 // ---- labels: the run, its conditions and speed, the colours of the foot grid
 
 /** @param {number} low @param {number} high */
-const gridColours = (low, high) =>
-  `Colours of the foot grid: from ${inMillimetres(low)}, dark, to ${inMillimetres(high)}, light; grey was never tried`;
+const gridColours = (low, high) => t(
+  "Colours of the foot grid: from {low}, dark, to {high}, light; grey was never tried",
+  { low: inMillimetres(low), high: inMillimetres(high) },
+);
 
 function StageLabels() {
   const values = scene.value?.action_values ?? null;
@@ -278,7 +280,7 @@ function followCovered(picture) {
 }
 
 /** Titles of chips that have one. @type {Record<string, string>} */
-const CHIP_TITLES = { speed: "Times real time" };
+const CHIP_TITLES = { speed: t("Times real time") };
 
 const SceneChips = () => html`
   <div class="chips">

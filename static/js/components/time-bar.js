@@ -2,7 +2,7 @@
 // is shown. It is shared by every page, unless this one plays a replay of its own.
 import { skipToEnd } from "../actions.js";
 import { Loaded } from "../features.js";
-import { whole } from "../format.js";
+import { count, decimal, fixed, t, whole } from "../format.js";
 import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { isPhone, isProjected } from "../page.js";
@@ -100,7 +100,8 @@ function Track({ known }) {
   const [host, width] = useWidth();
   const { unit, end, picture, computed, isComputing } = known;
   const place = (/** @type {number} */ at) => percent(shareOf(at, 0, end));
-  const words = isComputing ? `, computed up to ${positionInWords(known, computed)}` : "";
+  const inWords = (/** @type {number} */ moment) => positionInWords(known, moment);
+  const values = { at: inWords(picture), last: inWords(end), computed: inWords(computed) };
   /** @param {{ target: HTMLInputElement }} event */
   const seek = ({ target }) => {
     // Not `disabled`, by which it would lose the keyboard's focus whenever the connection breaks.
@@ -125,8 +126,9 @@ function Track({ known }) {
         <input type="range" min="0" max=${end} step=${unit === "s" ? 0.01 : 1} value=${picture} onKeyDown=${press}
           ...${handlers}
           aria-disabled=${isStale.value ? "true" : undefined}
-          aria-label=${isOwn.value ? "Moment of your replay" : "Moment that is shown"}
-          aria-valuetext=${`${positionInWords(known, picture)} of ${positionInWords(known, end)}${words}`} />
+          aria-label=${isOwn.value ? t("Moment of your replay") : t("Moment that is shown")}
+          aria-valuetext=${isComputing
+            ? t("{at} of {last}, computed up to {computed}", values) : t("{at} of {last}", values)} />
         ${isComputing && html`<i class="computed-end" style=${{ left: place(computed) }} aria-hidden="true"></i>`}
         <${Marks} place=${place} />
       </div>
@@ -144,7 +146,7 @@ function Track({ known }) {
 function labelsAbove(known, width) {
   const { computed, isComputing, end } = known;
   const first = isComputing && computed < end
-    ? [{ kind: "computed", at: computed, text: `computed ${positionInWords(known, computed)}` }] : [];
+    ? [{ kind: "computed", at: computed, text: t("computed {at}", { at: positionInWords(known, computed) }) }] : [];
   const named = marks.value.filter(({ isMinor }) => !isMinor).toSorted((a, b) => weightOf(a) - weightOf(b));
   /** @type {{ kind: string, at: number, text: string, left: number, right: number }[]} */
   const placed = [];
@@ -173,7 +175,8 @@ const Marks = ({ place }) => html`
       ? html`<i class=${mark.kind} style=${{ left: place(mark.at) }} aria-hidden="true"></i>`
       : html`
         <button class=${mark.kind} style=${{ left: place(mark.at) }} title=${markInWords(mark)}
-          aria-label=${`Go to: ${mark.text}`} onClick=${() => seekTo(mark.at, { isHeld: true })}></button>
+          aria-label=${t("Go to: {mark}", { mark: mark.text })}
+          onClick=${() => seekTo(mark.at, { isHeld: true })}></button>
       `))}
   </span>
 `;
@@ -181,7 +184,7 @@ const Marks = ({ place }) => html`
 /** How a lane spent its time. @param {{ row: typeof laneRows.value[number], end: number }} props */
 const LaneRow = ({ row: { name, color, thinking, until }, end }) => html`
   <div class="lane-row" role="img" style=${{ "--agent": color }}
-    aria-label=${`${name}: walking solid, thinking hatched`}>
+    aria-label=${t("{name}: walking solid, thinking hatched", { name })}>
     <i class="walked" style=${{ width: percent(shareOf(Math.min(until, end), 0, end)) }}></i>
     ${thinking.filter(([from]) => from < end).map(([from, to]) => html`
       <i class="thought" style=${{
@@ -200,17 +203,17 @@ const MIN_TICK_GAP_PX = 90;
 function Below({ known, width, place }) {
   const { unit, end, picture } = known;
   const wanted = Math.max(2, Math.min(6, Math.floor(width / MIN_TICK_GAP_PX)));
-  const last = unit === "s" ? `${Number(end.toFixed(1))}\u00a0s` : `${whole(end)} steps`;
+  const last = unit === "s" ? `${decimal(Number(end.toFixed(1)))}\u00a0s` : count(end, "step");
   const room = textWidth(last, 400) + 2 * SMALL_PX;
   const inner = ticks(end, wanted).filter((at) => (1 - at / end) * width > room);
-  const bubble = unit === "s" ? `${picture.toFixed(1)}\u00a0s` : `step ${whole(picture)}`;
+  const bubble = unit === "s" ? `${fixed(picture, 1)}\u00a0s` : t("step {step}", { step: picture });
   const half = textWidth(bubble) / 2 + SMALL_PX;
   const at = Math.min(Math.max(shareOf(picture, 0, end) * width, half), Math.max(half, width - half));
   const isFree = (/** @type {number} */ x) => Math.abs(x - at) > half + SMALL_PX;
   return html`
     <div class="below-rail" aria-hidden="true">
       ${inner.map((tick) => isFree(shareOf(tick, 0, end) * width) && html`
-        <span style=${{ left: place(tick) }}>${unit === "s" ? tick : whole(tick)}</span>
+        <span style=${{ left: place(tick) }}>${unit === "s" ? decimal(tick) : whole(tick)}</span>
       `)}
       ${at + half < width - textWidth(last, 400) && html`<span class="last">${last}</span>`}
       <b style=${{ left: `${at}px` }}>${bubble}</b>

@@ -2,7 +2,7 @@
 // signals: they make every sentence about a run and its moment from plain data, as `narrative.js` has it in a table.
 // What is said is decided by numbers of steps; where only times are known, those that differ by at most SAME_MOMENT_S
 // are the same.
-import { SAME_MOMENT_S } from "../format.js";
+import { SAME_MOMENT_S, t } from "../format.js";
 
 /** @import { ClockResult, Clock, LaneConfig, LaneResult, Playback, Run, Scene, SceneLane } from "../types.js" */
 /** @import { Timeline, TimelineLane } from "../types.js" */
@@ -37,9 +37,9 @@ export const isActive = (run) => Boolean(run && ACTIVE.includes(run.state));
 /** How a run ended that did not take all its steps, as a word that begins a sentence, and as a verb. */
 /** @type {Record<string, { word: string, verb: string }>} */
 const EARLY_ENDS = {
-  stopped: { word: "Stopped", verb: "was stopped" },
-  failed: { word: "Failed", verb: "failed" },
-  interrupted: { word: "Interrupted", verb: "was interrupted" },
+  stopped: { word: t("Stopped"), verb: t("was stopped") },
+  failed: { word: t("Failed"), verb: t("failed") },
+  interrupted: { word: t("Interrupted"), verb: t("was interrupted") },
 };
 
 /** Null of a run that goes on or has finished. @param {Run | null} run */
@@ -98,7 +98,7 @@ export function stepEnds({ points, thinking, futures }) {
   if (points.length - 1 !== thinking.length + futures.length) return null;
   // Each step adds the end of its motion, and before it the end of its thinking, if it took time: the same number.
   const thoughtUntil = new Set(thinking.map(([, to]) => to));
-  return points.filter(([t], n) => n === 0 || !thoughtUntil.has(t));
+  return points.filter(([at], n) => n === 0 || !thoughtUntil.has(at));
 }
 
 /**
@@ -110,7 +110,7 @@ export function stepEnds({ points, thinking, futures }) {
 export function madeAt(track, time) {
   const ends = stepEnds(track);
   if (!ends) return null;
-  const count = ends.filter(([t]) => t <= time + SAME_MOMENT_S).length - 1;
+  const count = ends.filter(([at]) => at <= time + SAME_MOMENT_S).length - 1;
   return Math.min(count * track.stride, track.steps);
 }
 
@@ -133,7 +133,7 @@ export function timeSpent({ thinking, total_s }, time) {
 export function distanceAt(points, time) {
   const last = points.at(-1);
   if (!last) return 0;
-  const next = points.findIndex(([t]) => t >= time);
+  const next = points.findIndex(([at]) => at >= time);
   if (next === -1) return last[1];
   if (next === 0) return points[0][1];
   const [[t0, d0], [t1, d1]] = [points[next - 1], points[next]];

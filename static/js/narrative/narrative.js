@@ -1,6 +1,6 @@
 // Every sentence about the run on stage and the moment of it that is shown: one table of states × what is said, from
 // what the API tells. The page, phones and projectors show what it returns, and say no more.
-import { sentence, times, whole } from "../format.js";
+import { sentence, t, times } from "../format.js";
 import { earlyEndOf, isActive, isTimedOutIn, rowsOf } from "./moment.js";
 import {
   brokenOff, halting, lead, leaderOf, leftOff, practised, practising, reasonOf, ruleAfter, ruleBefore, ruleOfNone,
@@ -66,27 +66,27 @@ const ruleToCome = (facts) => ofRows((rows) => ruleBefore(facts.clockTitle, rows
 const ruleOfRanks = (facts) => ofRows((rows) => ruleAfter(facts.clockTitle, facts, rows))(facts);
 /** @type {(facts: Facts) => string} */
 const whyNotRanked = (facts) => ruleOfNone(facts.clockTitle, facts);
-const ABOUT = "It tries moves, keeps what each was worth, and races against two that think ahead.";
+const ABOUT = t("It tries moves, keeps what each was worth, and races against two that think ahead.");
 
 /** @type {Record<State, Partial<Narration>>} */
 const TABLE = {
   "nothing": {
-    headline: () => "A hexapod learns to walk", reason: () => ABOUT,
-    bar: () => "The robots stand on the start line.", board: () => "The lanes of the next race.",
+    headline: () => t("A hexapod learns to walk"), reason: () => ABOUT,
+    bar: () => t("The robots stand on the start line."), board: () => t("The lanes of the next race."),
   },
   "loading": {
-    headline: ({ isAway }) => (isAway ? "Waiting for the server" : "Loading…"),
-    bar: (facts) => (facts.isOwn ? loading(facts) : "Its first steps are being computed."),
-    board: () => "Loading the run on the stage…",
+    headline: ({ isAway }) => (isAway ? t("Waiting for the server") : t("Loading…")),
+    bar: (facts) => (facts.isOwn ? loading(facts) : t("Its first steps are being computed.")),
+    board: () => t("Loading the run on the stage…"),
   },
   "lost": {
-    headline: () => "No run is shown", bar: () => "No run is shown.",
-    board: () => "No run is shown, so there are no figures.",
+    headline: () => t("No run is shown"), bar: () => t("No run is shown."),
+    board: () => t("No run is shown, so there are no figures."),
   },
   "void": { headline: noStep, bar: noStep, board: (facts) => `${noStep(facts)}.`, isEnd: true, isOfRun: true },
   "waiting": {
-    headline: () => "On the start line",
-    board: ({ run }) => (isActive(run) ? "The race is about to begin." : "Its figures come with the picture."),
+    headline: () => t("On the start line"),
+    board: ({ run }) => (isActive(run) ? t("The race is about to begin.") : t("Its figures come with the picture.")),
     isUnseen: true,
   },
   "practising": {
@@ -157,29 +157,29 @@ export function narrativeOf(context) {
 }
 
 /** Said of what may go on unseen. */
-const STOOD = "This is the last that is known.";
+const STOOD = t("This is the last that is known.");
 
 // ---- the sentences of single states
 
 /** @param {Facts} facts */
 function noStep({ run }) {
-  return `${earlyEndOf(run)?.word} before its first step`;
+  return t("{end} before its first step", { end: earlyEndOf(run)?.word ?? "" });
 }
 
 /** @param {Facts} facts */
 function firstSteps({ run }) {
-  if (run && !isActive(run)) return "Its picture is not here yet.";
-  return run?.state === "queued" ? "It waits for its turn." : "Its first steps are being computed.";
+  if (run && !isActive(run)) return t("Its picture is not here yet.");
+  return run?.state === "queued" ? t("It waits for its turn.") : t("Its first steps are being computed.");
 }
 
 /** @param {Facts} facts */
 function beforeRace({ race }) {
-  return race ? "The race starts when practice is over." : "The lanes of the next race.";
+  return race ? t("The race starts when practice is over.") : t("The lanes of the next race.");
 }
 
 /** @param {Facts} facts */
 function loading({ isAway }) {
-  return isAway ? "Your replay waits for the server." : "Loading your replay…";
+  return isAway ? t("Your replay waits for the server.") : t("Loading your replay…");
 }
 
 /** @param {Facts} facts */
@@ -222,7 +222,8 @@ const colorOf = ({ run, agents }) =>
 
 /** A failure is announced at once, other outcomes when the picture shows them. */
 /** @param {Facts} facts @param {string} end */
-const announced = ({ run }, end) => (run?.state === "failed" ? `The ${run.kind} failed: ${run.error ?? ""}` : end);
+const announced = ({ run }, end) =>
+  (run?.state === "failed" ? t("The {run} failed: {reason}", { run: nounOf(run), reason: run.error ?? "" }) : end);
 
 // ---- the note of a run that ended early, and what can be done
 
@@ -237,24 +238,32 @@ function noteOf({ run, stage, state, isAway, isOwn, goesOnWith, canResume, recor
   if (!run || !end || !isThere) return null;
   const { done } = run.progress;
   return {
-    what: `The ${run.kind} ${end.verb}${done ? whereLeft(run) : " before its first step"}.`,
+    what: whatEnded(run, end.verb),
     words: done ? lastPicture(run, recordedStep) : "",
     action: goesOnWith && canResume ? { label: goOnLabel(run, goesOnWith), does: "resume", run: goesOnWith } : null,
   };
 }
 
-/** Of a race the headline tells it, by lane. @param {Run} run */
-const whereLeft = ({ kind, progress: { done, total } }) =>
-  (kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "");
+/** A run by its kind. @param {Run} run */
+const nounOf = ({ kind }) => (kind === "race" ? t("race") : t("training"));
+
+/** Where a run has ended; of a race the headline tells it, by lane. @param {Run} run @param {string} verb */
+function whatEnded(run, verb) {
+  const { kind, progress: { done, total: steps } } = run;
+  const values = { run: nounOf(run), verb, step: done, steps };
+  if (!done) return t("The {run} {verb} before its first step.", values);
+  return kind === "race" ? t("The {run} {verb}.", values) : t("The {run} {verb} at step {step} of {steps}.", values);
+}
 
 /** @param {Run} run @param {Run} resumed */
-const goOnLabel = (run, resumed) => (resumed.id === run.id ? "Go on" : `Go on with the ${resumed.kind}`);
+const goOnLabel = (run, resumed) =>
+  (resumed.id === run.id ? t("Go on") : t("Go on with the {run}", { run: nounOf(resumed) }));
 
 /** A crash loses the steps since the last checkpoint, which count as done. */
 /** @param {Run} run @param {number | null} recorded */
 function lastPicture({ kind, progress: { done } }, recorded) {
-  if (kind !== "training" || recorded === null || recorded >= done) return "This is its last picture.";
-  return `What came after step ${whole(recorded)} is lost: this is its last picture.`;
+  if (kind !== "training" || recorded === null || recorded >= done) return t("This is its last picture.");
+  return t("What came after step {step} is lost: this is its last picture.", { step: recorded });
 }
 
 // ---- labels over the picture, and of the button that plays
@@ -277,44 +286,47 @@ function chipsOf(facts) {
 
 /** @type {Record<string, Chip | undefined>} */
 const PHASES = {
-  "photo-finish": { kind: "accent", words: "Time-out: photo finish" },
-  "waiting": { kind: "", words: "Waiting for a robot that is still deciding" },
+  "photo-finish": { kind: "accent", words: t("Time-out: photo finish") },
+  "waiting": { kind: "", words: t("Waiting for a robot that is still deciding") },
 };
 
 /** @param {Facts} facts @returns {Chip[]} */
 function replayOf(facts) {
   const { scene, isOwn, isOfGuest, isAway, isBuffering, problem } = facts;
-  if (!isOwn) return scene?.replay ? [{ kind: "", words: "Recorded" }] : [];
+  if (!isOwn) return scene?.replay ? [{ kind: "", words: t("Recorded") }] : [];
   if (problem) return [];
   // While the server is away a note says so.
-  const words = isBuffering && !isAway ? loading(facts) : isOfGuest ? "Your robot" : "Your replay";
+  const words = isBuffering && !isAway ? loading(facts) : isOfGuest ? t("Your robot") : t("Your replay");
   return [{ kind: "accent", words }];
 }
 
 /** @param {Facts} facts */
 function nothing(facts) {
-  if (!facts.isOwn) return "On the start line";
-  return facts.problem ? "No run is shown" : loading(facts);
+  if (!facts.isOwn) return t("On the start line");
+  return facts.problem ? t("No run is shown") : loading(facts);
 }
-
-/** Whose picture this page shows: everyone's, or one of its own. @param {Facts} facts */
-const pictureName = ({ isOwn }) => (isOwn ? "replay" : "stage");
 
 /** @param {Facts} facts @returns {Chip[]} */
 function speedOf(facts) {
   const { scene, stage, isAway, isOwn, isBuffering } = facts;
   if (!scene || scene.kind === "idle" || stage?.ended) return [];
-  if (stage?.playing === false) return [{ kind: "", words: `${sentence(pictureName(facts))} paused` }];
+  if (stage?.playing === false) return [{ kind: "", words: isOwn ? t("Replay paused") : t("Stage paused") }];
   const isStill = (isAway && !isOwn) || isBuffering || !(scene.shown_speed > 0);
   return isStill ? [] : [{ kind: "speed", words: times(scene.shown_speed) }];
 }
+
+/** Of the button that plays: to play, to pause, to play again. */
+const PLAY_LABELS = {
+  own: [t("Play your replay"), t("Pause your replay"), t("Play your replay again")],
+  stage: [t("Play the stage"), t("Pause the stage"), t("Play the stage again")],
+  begin: [t("Play in a replay"), t("Pause in a replay"), t("Play in a replay again")],
+};
 
 /** @param {Facts} facts */
 function playLabel(facts) {
   const { stage, isAway, isOwn, canPlay } = facts;
   const isPlaying = Boolean(stage?.playing && !stage.ended && (!isAway || isOwn));
   // Who may not play the stage begins a replay with it.
-  const what = isOwn ? "your replay" : canPlay ? "the stage" : "in a replay";
-  const again = stage?.ended ? " again" : "";
-  return { isPlaying, label: `${isPlaying ? "Pause" : "Play"} ${what}${again}` };
+  const [play, pause, again] = isOwn ? PLAY_LABELS.own : canPlay ? PLAY_LABELS.stage : PLAY_LABELS.begin;
+  return { isPlaying, label: isPlaying ? pause : stage?.ended ? again : play };
 }

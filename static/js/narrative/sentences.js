@@ -1,5 +1,7 @@
 // The sentences about a race and a practice: who leads or has won, by which rule and why; what a practice has come to.
-import { count, distanceApart, inMillimetres, listed, metres, percentage, SAME_MOMENT_S, whole } from "../format.js";
+import {
+  decimal, distanceApart, fixed, inMillimetres, listed, metres, percentage, SAME_MOMENT_S, t,
+} from "../format.js";
 import { distanceOf, earlyEndOf, isActive, LEVEL_M, madeAt, stepEnds, timeSpent } from "./moment.js";
 
 /** @import { CurvePoint } from "../training.js" */
@@ -23,10 +25,12 @@ export const areLevel = (rows) => rows.length > 1 && leadIn(rows) < LEVEL_M;
 /** The leader of a race that has not timed out. @param {Row[]} rows */
 export function lead(rows) {
   const best = Math.max(...rows.map(distanceOf));
-  if (best <= 0) return rows.some(({ step }) => step > 0) ? "Nobody has gained ground" : "On the start line";
+  if (best <= 0) return rows.some(({ step }) => step > 0) ? t("Nobody has gained ground") : t("On the start line");
   const ahead = rows.filter((row) => best - distanceOf(row) < LEVEL_M);
-  if (ahead.length > 1) return `${titlesOf(ahead)} are level`;
-  return `${ahead[0].title} leads ${rows.length > 1 ? `by ${distanceApart(leadIn(rows))}` : `with ${metres(best)}`}`;
+  if (ahead.length > 1) return t("{robots} are level", { robots: titlesOf(ahead) });
+  const [{ title: robot }] = ahead;
+  if (rows.length === 1) return t("{robot} leads with {distance}", { robot, distance: metres(best) });
+  return t("{robot} leads by {distance}", { robot, distance: distanceApart(leadIn(rows)) });
 }
 
 /**
@@ -36,17 +40,18 @@ export function lead(rows) {
 export function leaderOf(rows) {
   const [first] = rows.toSorted((a, b) => distanceOf(b) - distanceOf(a));
   if (distanceOf(first) < LEVEL_M || areLevel(rows)) return null;
-  return { lane: first.lane, words: `${first.title} takes the lead, ${metres(distanceOf(first))}` };
+  const values = { robot: first.title, distance: metres(distanceOf(first)) };
+  return { lane: first.lane, words: t("{robot} takes the lead, {distance}", values) };
 }
 
 /** The outcome of a race: "Greedy wins by 3 cm". @param {Row[]} rows */
 export function verdict(rows) {
   const winners = rows.filter(({ rank }) => rank === 1);
-  if (winners.length > 1) return `${titlesOf(winners)} tie`;
-  const [{ title, failure, step }] = winners;
-  if (failure) return `${title} wins, stopped at step ${step}`;
-  const margin = rows.length > 1 ? `by ${distanceApart(leadIn(rows))}` : `with ${metres(distanceOf(winners[0]))}`;
-  return `${title} wins ${margin}`;
+  if (winners.length > 1) return t("{robots} tie", { robots: titlesOf(winners) });
+  const [{ title: robot, failure, step }] = winners;
+  if (failure) return t("{robot} wins, stopped at step {step}", { robot, step });
+  if (rows.length === 1) return t("{robot} wins with {distance}", { robot, distance: metres(distanceOf(winners[0])) });
+  return t("{robot} wins by {distance}", { robot, distance: distanceApart(leadIn(rows)) });
 }
 
 /**
@@ -58,8 +63,9 @@ function leftAt({ race }, rows) {
   const halted = rows.filter(({ isHalted }) => isHalted);
   const reached = (halted.length ? halted : rows).map(({ step }) => step);
   const [first, last] = [Math.min(...reached), Math.max(...reached)];
-  const at = first === last ? `step ${first}` : `steps ${first} to ${last}`;
-  return `${earlyEndOf(race)?.word} at ${at} of ${race?.config.steps}`;
+  const values = { end: earlyEndOf(race)?.word ?? "", first, last, steps: race?.config.steps ?? 0 };
+  return first === last ? t("{end} at step {first} of {steps}", values)
+    : t("{end} at steps {first} to {last} of {steps}", values);
 }
 
 /** While others are still on their way to where they were left, nobody leads. */
@@ -75,34 +81,36 @@ export function leftOff(moment, rows) {
   const best = Math.max(...rows.map((row) => row.distance_m ?? 0));
   const at = leftAt(moment, rows);
   if (best <= 0) return at;
-  return `${at}: ${titlesOf(rows.filter((row) => (row.distance_m ?? 0) === best))} had come farthest, ${metres(best)}`;
+  const robots = titlesOf(rows.filter((row) => (row.distance_m ?? 0) === best));
+  return t("{at}: {robots} had come farthest, {distance}", { at, robots, distance: metres(best) });
 }
 
 // ---- the rule
 
 /** @param {string} clockTitle @param {Row[]} rows */
-export const ruleBefore = (clockTitle, [{ steps }]) =>
-  `The farthest at time-out wins: when the first robot has used its ${count(steps, "step")} (${clockTitle}).`;
+export const ruleBefore = (clockTitle, [{ steps }]) => t(
+  "The farthest at time-out wins: when the first robot has used its {steps} {steps|step|steps} ({clock}).",
+  { steps, clock: clockTitle },
+);
 
 /** @param {string} clockTitle @param {KnownRace} known */
 export const ruleOfNone = (clockTitle, { race }) =>
-  `No ranking: the race ${earlyEndOf(race)?.verb} before its time-out (${clockTitle}).`;
+  t("No ranking: the race {verb} before its time-out ({clock}).", {
+    verb: earlyEndOf(race)?.verb ?? "", clock: clockTitle,
+  });
 
 /** @param {string} clockTitle @param {KnownRace} moment @param {Row[]} rows */
-export const ruleAfter = (clockTitle, moment, rows) =>
-  `Ranked at time-out${decidedWhen(rows, firstTimedOut(moment))} (${clockTitle}).`;
-
-/**
- * The moment that decided a race: "when Q-learning had used its 50 steps".
- * @param {Row[]} rows
- * @param {number[]} first numbers of the lanes that used all their steps first; none while that is not known
- */
-function decidedWhen(rows, first) {
-  const used = count(rows[0].steps, "step");
-  if (!first.length) return "";
-  if (first.length === rows.length) return `, after ${used} each`;
+export function ruleAfter(clockTitle, moment, rows) {
+  const first = firstTimedOut(moment);
   const timedOut = rows.filter(({ lane }) => first.includes(lane));
-  return `, when ${titlesOf(timedOut)} had used ${timedOut.length > 1 ? "their" : "its"} ${used}`;
+  const values = { clock: clockTitle, steps: rows[0].steps, robots: titlesOf(timedOut) };
+  if (!first.length) return t("Ranked at time-out ({clock}).", values);
+  if (first.length === rows.length) {
+    return t("Ranked at time-out, after {steps} {steps|step|steps} each ({clock}).", values);
+  }
+  return timedOut.length > 1
+    ? t("Ranked at time-out, when {robots} had used their {steps} {steps|step|steps} ({clock}).", values)
+    : t("Ranked at time-out, when {robots} had used its {steps} {steps|step|steps} ({clock}).", values);
 }
 
 /** Numbers of the lanes that use all their steps first; none while it is not known. @param {KnownRace} moment */
@@ -133,7 +141,8 @@ const FEWEST_RANDOM = 0.005;
 
 /** @param {KnownPractice} known */
 export const practising = ({ title, newest }) =>
-  (newest ? `${title} walks ${metres(newest.distance_m)} so far` : `${title} practises`);
+  (newest ? t("{robot} walks {distance} so far", { robot: title, distance: metres(newest.distance_m) })
+    : t("{robot} practises", { robot: title }));
 
 /** @param {KnownPractice} known */
 export const whyPractising = ({ training, newest }) =>
@@ -146,35 +155,42 @@ export const whyPractising = ({ training, newest }) =>
 export function chanceInWords(epsilon) {
   if (epsilon === undefined || epsilon < FEWEST_RANDOM) return null;
   const shown = Number(epsilon.toFixed(2));
-  return `${whole(100 * epsilon)} of 100 steps are still random (ε\u00a0${shown}): it finds out which moves pay.`;
+  const values = { share: 100 * epsilon, epsilon: decimal(shown) };
+  return t("{share} of 100 steps are still random (ε\u00a0{epsilon}): it finds out which moves pay.", values);
 }
 
 /** When the first test of a practice comes; null without one, as where it ended before. @param {Run} training */
 function firstTest(training) {
   const step = training.config.evaluate_every;
   const isTested = step > 0 && (isActive(training) || training.progress.done > step);
-  return isTested ? `Its first test is at step ${whole(step)}.` : null;
+  return isTested ? t("Its first test is at step {step}.", { step }) : null;
 }
 
 /** @param {KnownPractice} known */
 export const practised = ({ title, newest }) =>
-  (newest ? `${title} walked ${metres(newest.distance_m)} in its last test` : `${title} has practised`);
+  (newest ? t("{robot} walked {distance} in its last test", { robot: title, distance: metres(newest.distance_m) })
+    : t("{robot} has practised", { robot: title }));
 
 /** @param {KnownPractice} known */
-export const whyPractised = ({ training }) => `It has practised ${count(training.progress.done, "step")}.`;
+export const whyPractised = ({ training }) =>
+  t("It has practised {steps} {steps|step|steps}.", { steps: training.progress.done });
 
 /** "Stopped at step 400 of 1500". @param {{ training: Run }} known */
 export const brokenOff = ({ training }) => {
   const { done, total } = training.progress;
-  return `${earlyEndOf(training)?.word} at step ${whole(done)} of ${whole(total)}`;
+  const values = { end: earlyEndOf(training)?.word ?? "", first: done, steps: total };
+  return t("{end} at step {first} of {steps}", values);
 };
 
 /** How far the learner had come where it was left; null where that was not measured. @param {KnownPractice} known */
 export const whyBrokenOff = ({ training, title, newest }) => {
   const then_m = training.result?.distance_m ?? null;
-  if (then_m !== null) return `Tested there, ${title} walked ${metres(then_m)} in 50 steps.`;
+  if (then_m !== null) {
+    return t("Tested there, {robot} walked {distance} in 50 steps.", { robot: title, distance: metres(then_m) });
+  }
   if (!newest) return null;
-  return `${title} walked ${metres(newest.distance_m)} in its last test, after ${count(newest.step, "step")}.`;
+  const values = { robot: title, distance: metres(newest.distance_m), steps: newest.step };
+  return t("{robot} walked {distance} in its last test, after {steps} {steps|step|steps}.", values);
 };
 
 // ---- why the leader is ahead: the first sentence that the recorded figures of two lanes show
@@ -246,15 +262,15 @@ const areWhole = (...lanes) => lanes.every(({ stride }) => stride === 1);
 const fallOf = (a, b) =>
   b.fell_at_step === null || a.fell_at_step !== null
     ? null
-    : `${b.title} has fallen at step ${whole(b.fell_at_step + 1)}.`;
+    : t("{robot} has fallen at step {step}.", { robot: b.title, step: b.fell_at_step + 1 });
 
 /** @param {Walked} b */
 function marchOf(b) {
   if (!areWhole(b) || b.made < FEW_STEPS) return null;
   const last_m = b.ends_m[b.made] - b.ends_m[b.made - FEW_STEPS];
   if (last_m >= MARCHING_M) return null;
-  const gained = (100 * last_m).toFixed(1).replace("-", "−");
-  return `${b.title} marches on the spot: ${gained}\u00a0cm in its last ten steps.`;
+  const gained = fixed(100 * last_m, 1).replace("-", "−");
+  return t("{robot} marches on the spot: {gained}\u00a0cm in its last ten steps.", { robot: b.title, gained });
 }
 
 /**
@@ -274,8 +290,9 @@ function slowedBy(a, b, happened) {
     const [leader, other] = [change(a), change(b)];
     const isSlower = leader && other && other.before > 0 && other.after < (1 - SHORTER) * other.before;
     if (isSlower && other.before - other.after > leader.before - leader.after) {
-      const { before, after } = other;
-      return `${event.words}: ${b.title} went ${inMillimetres(before)} a step before, ${inMillimetres(after)} after.`;
+      const [before, after] = [other.before, other.after].map(inMillimetres);
+      const values = { event: event.words, robot: b.title, before, after };
+      return t("{event}: {robot} went {before} a step before, {after} after.", values);
     }
   }
   return null;
@@ -286,16 +303,20 @@ function longerSteps(a, b) {
   const [first, second] = [meanStep(a), meanStep(b)];
   if (first <= (1 + LONGER) * second) return null;
   const futures = a.futures.reduce((sum, n) => sum + n, 0) / Math.min(a.made, a.futures.length * a.stride);
-  const moves = a.futures.every((n) => n === futures) ? whole(futures) : `about ${whole(futures)}`;
-  const search = futures >= 1 ? ` It simulates ${moves} moves before each.` : "";
-  return `Its steps are longer: ${inMillimetres(first)} against ${inMillimetres(second)} of ${b.title}.${search}`;
+  const isAlways = a.futures.every((n) => n === futures);
+  const search = isAlways ? t("It simulates {moves} moves before each.", { moves: futures })
+    : t("It simulates about {moves} moves before each.", { moves: futures });
+  const values = { first: inMillimetres(first), second: inMillimetres(second), robot: b.title };
+  const longer = t("Its steps are longer: {first} against {second} of {robot}.", values);
+  return futures >= 1 ? `${longer} ${search}` : longer;
 }
 
 /** @type {(a: Walked, b: Walked) => string | null} */
 const shorterThinking = (a, b) =>
   a.made > b.made && a.thought_s < b.thought_s
-    ? `It thinks less: ${whole(a.made)} steps made against ${whole(b.made)} of ${b.title}.`
-    : null;
+    ? t("It thinks less: {more} steps made against {fewer} of {robot}.", {
+      more: a.made, fewer: b.made, robot: b.title,
+    }) : null;
 
 /** @type {(a: Walked, b: Walked) => string | null} */
 function betterStart(a, b) {
@@ -303,7 +324,8 @@ function betterStart(a, b) {
   const leadAfter = (/** @type {number} */ step) => a.ends_m[step] - b.ends_m[step];
   const last = Math.min(a.made, b.made);
   if (last < FEW_STEPS || leadAfter(FEW_STEPS) < Math.max(LEVEL_M, SHARE_OF_LEAD * leadAfter(last))) return null;
-  return `Both walk alike; ${a.title} began ${distanceApart(leadAfter(FEW_STEPS))} better.`;
+  const lead_m = distanceApart(leadAfter(FEW_STEPS));
+  return t("Both walk alike; {robot} began {distance} better.", { robot: a.title, distance: lead_m });
 }
 
 /**
@@ -338,5 +360,5 @@ export function workOf(track, time_s, steps) {
   const { thought, walked: walking } = timeSpent(track, time_s);
   if (thought + walking <= 0 || thought < LEAST_THOUGHT * (thought + walking)) return null;
   const share = percentage(thought / (thought + walking));
-  return `It thought ${share} of the time: ${whole(made)} of ${whole(steps)} steps.`;
+  return t("It thought {share} of the time: {made} of {steps} steps.", { share, made, steps });
 }

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { html, Segments } from "../../../js/components/elements.js";
 import { NumberRow } from "../../../js/components/number-row.js";
-import { sentence } from "../../../js/format.js";
+import { decimal, sentence } from "../../../js/format.js";
 import { parseNumber } from "../../../js/parse.js";
 import { agentOf, choiceTitle, fullTitle, rangeOf } from "../../../js/settings.js";
 import { options, setEntry } from "../../../js/store.js";
@@ -92,7 +92,7 @@ function valueOf(name, bounds, card, number) {
 export const givenInWords = (given, card) => Object.entries(given).map(([name, value]) => {
   const setting = settingOf(name, card);
   const title = namesOf(name).find(([choice]) => choice === value)?.[1];
-  return title ?? `${setting?.symbol ?? setting?.title.toLowerCase() ?? name}\u00a0${value}`;
+  return title ?? `${setting?.symbol ?? setting?.title.toLowerCase() ?? name}\u00a0${decimal(String(value))}`;
 }).join(", ");
 
 /** A setting by its symbol or title, and one of its values in words. @param {string} name @param {LessonCard} card */

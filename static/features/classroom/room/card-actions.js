@@ -1,4 +1,5 @@
 // What a participant can do on the card: lock the prediction, let the robot go, and what one waits for.
+import { t } from "../../../js/format.js";
 import { html } from "../../../js/components/elements.js";
 import { Failure } from "./join.js";
 import { chosenSettings } from "./allowed-settings.js";
@@ -9,12 +10,14 @@ import {
 
 /** @import { LessonCard } from "../../../js/types.js" */
 
-const GO = { "training": "Go: let it practise", "race": "Go: race", "what-if": "Go: try it on thirty robots" };
+const GO = {
+  "training": t("Go: let it practise"), "race": t("Go: race"), "what-if": t("Go: try it on thirty robots"),
+};
 
 /** The words of the button that runs what a card runs. @param {LessonCard} card */
 function wordsOf({ go: kind }) {
-  if (busy.value.go) return kind === "what-if" ? "Thirty robots practise…" : "Your robot starts…";
-  return ownRun.value || ownWhatIf.value ? "Go again with these settings" : GO[kind ?? "training"];
+  if (busy.value.go) return kind === "what-if" ? t("Thirty robots practise…") : t("Your robot starts…");
+  return ownRun.value || ownWhatIf.value ? t("Go again with these settings") : GO[kind ?? "training"];
 }
 
 /** Whether the card asks, and waits for the own answer. @param {LessonCard} card */
@@ -93,6 +96,6 @@ export function Next({ card }) {
 
 /** @type {(card: LessonCard, isLast: boolean) => string} */
 function waitingFor(card, isLast) {
-  if (card.ask && !isRevealed.value) return "Wait for the reveal.";
-  return isLast ? "This is the last card." : "The next card comes from your teacher.";
+  if (card.ask && !isRevealed.value) return t("Wait for the reveal.");
+  return isLast ? t("This is the last card.") : t("The next card comes from your teacher.");
 }

@@ -1,7 +1,7 @@
 // The chart of questions on which one points or draws: distance against steps of practice.
 import { useRef, useState } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
-import { metres, whole } from "../../../js/format.js";
+import { count, fixed, metres, t, whole } from "../../../js/format.js";
 import { shareOf, ticks } from "../../../js/scale.js";
 
 /** @import { ControlProps } from "./questions.js" */
@@ -81,7 +81,7 @@ export const marksOf = (steps) => ({
 });
 
 /** A point in words. @param {number[]} point */
-export const inWords = ([x, y]) => `${metres(y)} after ${whole(x)} steps`;
+export const inWords = ([x, y]) => t("{distance} after {steps} {steps|step|steps}", { distance: metres(y), steps: x });
 
 // ---- how it is drawn
 
@@ -103,11 +103,11 @@ export function Axes({ steps }) {
   return html`
     ${ys.map((y) => html`
       <line class="grid" x1=${LEFT} x2=${WIDTH - 8} y1=${placed([0, y], steps)[1]} y2=${placed([0, y], steps)[1]} />
-      <text class="mark-text" x=${LEFT - 6} y=${placed([0, y], steps)[1] + 4} text-anchor="end">${y.toFixed(1)}</text>
+      <text class="mark-text" x=${LEFT - 6} y=${placed([0, y], steps)[1] + 4} text-anchor="end">${fixed(y, 1)}</text>
     `)}
     ${xs.map((x) => html`
       <text class="mark-text" x=${placed([x, 0], steps)[0]} y=${HEIGHT - 6}
-        text-anchor=${x === xs.at(-1) ? "end" : "middle"}>${x === xs.at(-1) ? `${whole(x)} steps` : whole(x)}</text>
+        text-anchor=${x === xs.at(-1) ? "end" : "middle"}>${x === xs.at(-1) ? count(x, "step") : whole(x)}</text>
     `)}
     <text class="mark-text" x=${LEFT + 4} y="16">distance in m</text>
   `;
@@ -132,7 +132,7 @@ export function Point({ card, locked, draft, onValue, actual }) {
     onValue(pointOf(event, steps));
   return html`
     <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} role="img"
-      aria-label=${shown ? `Your point: ${inWords(shown)}` : "No point yet"}
+      aria-label=${shown ? t("Your point: {point}", { point: inWords(shown) }) : t("No point yet")}
       onPointerDown=${take} onPointerMove=${take}>
       <${Axes} steps=${steps} />
       ${actual.length > 1 && html`<path class="actual" d=${`M${lineOf(actual, steps)}`} />`}
@@ -148,7 +148,7 @@ export function Point({ card, locked, draft, onValue, actual }) {
             onInput=${(/** @type {any} */ { target }) => onValue([x, Number(target.value)])} /></label>
       </div>
     `}
-    <p class="dim">${shown ? `Your point: ${inWords(shown)}` : "Tap where you expect it."}</p>
+    <p class="dim">${shown ? t("Your point: {point}", { point: inWords(shown) }) : t("Tap where you expect it.")}</p>
   `;
 }
 
@@ -159,7 +159,7 @@ export function Curve({ card, locked, draft, onValue, actual }) {
   /** @type {number[] | null} */
   const heights = locked?.map((/** @type {number[]} */ [, y]) => y) ?? draft ?? null;
   const [chosen, pen] = usePen(heights, steps, onValue);
-  const closed = { role: "img", "aria-label": `Your curve, ${heights ? "drawn" : "not drawn"}` };
+  const closed = { role: "img", "aria-label": heights ? t("Your curve, drawn") : t("Your curve, not drawn") };
   const points = heights && knotsOf(steps).map((x, n) => [x, heights[n]]);
   return html`
     <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} ...${isOpen ? pen : closed}>
@@ -172,7 +172,8 @@ export function Curve({ card, locked, draft, onValue, actual }) {
       `)}
     </svg>
     <p class="dim">
-      ${isOpen && !points ? "Draw with a finger from left to right, or with the arrow keys." : "Your curve"}
+      ${isOpen && !points ? t("Draw with a finger from left to right, or with the arrow keys.")
+        : t("Your curve")}
       ${actual.length > 1 && html` · <span class="actual-key">your robot</span>`}
     </p>
   `;
@@ -208,7 +209,7 @@ function usePen(heights, steps, onValue) {
   return [chosen, {
     role: "slider", tabindex: 0, onKeyDown,
     onPointerDown: stroke, onPointerMove: stroke, onPointerUp: lift, onPointerCancel: lift,
-    "aria-label": "Your curve: left and right choose a step, up and down its distance",
+    "aria-label": t("Your curve: left and right choose a step, up and down its distance"),
     "aria-valuemin": LOWEST_M, "aria-valuemax": HIGHEST_M, "aria-valuenow": here[1], "aria-valuetext": inWords(here),
   }];
 }

@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
 import { isPolling } from "../../../js/events.js";
 import { isAway } from "../../../js/store.js";
-import { codeInGroups } from "../../../js/format.js";
+import { codeInGroups, t } from "../../../js/format.js";
 import { busy, code as typedCode, failures, isRemoved, join, refusal, room } from "./room.js";
 
 /** Why something failed, beside its button. @param {{ at: string }} props */
@@ -22,7 +22,7 @@ export function Closed() {
   return html`
     <main class="door">
       <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
-      <h1>No room ${typedCode.length > 16 ? "of this code" : typedCode}</h1>
+      <h1>${typedCode.length > 16 ? t("No room of this code") : t("No room {code}", { code: typedCode })}</h1>
       <p role="alert">${refusal}</p>
       <label for="other-code">Code on the projector</label>
       <input id="other-code" class="code-field" type="text" maxlength="16" autocomplete="off"
@@ -56,7 +56,8 @@ export function Door() {
           nothing yet. You can join again, with another name and another robot.
         </p>
       `}
-      <p class="dim">Room <b class="code">${codeInGroups(code)}</b>${participants > 0 && ` · ${participants} in it`}</p>
+      <p class="dim">Room <b class="code">${codeInGroups(code)}</b>
+        ${participants > 0 && t(" · {number} in it", { number: participants })}</p>
       <button class="primary" disabled=${busy.value.join} onClick=${join}>Join</button>
       <${Failure} at="join" />
       <p class="dim">You get a name from a list and a robot of your own. No account is needed.</p>
@@ -65,7 +66,7 @@ export function Door() {
 }
 
 /** Told while the page hears nothing of the room, or only what it asks for. @param {{ words?: string }} props */
-export const Away = ({ words = "This is the last that is known." }) => html`
+export const Away = ({ words = t("This is the last that is known.") }) => html`
   ${isAway.value && html`
     <p class="strip-note warn" role="status">
       <span class="spinner" aria-hidden="true"></span> Reconnecting. ${words}

@@ -1,6 +1,7 @@
 // Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
 import { effect, untracked } from "@preact/signals";
 import { render } from "preact";
+import { t } from "../../../js/format.js";
 import { html } from "../../../js/components/elements.js";
 import { Loaded, withStyle } from "../../../js/features.js";
 import { followTheme } from "../../../js/page.js";
@@ -28,7 +29,7 @@ const loadCockpit = () => import("./cockpit.js").then(({ Cockpit }) => Cockpit);
 followTheme();
 document.documentElement.toggleAttribute("data-projector", isProjector);
 effect(() => {
-  const { title, code } = room.value ?? { title: "Room", code: "" };
+  const { title, code } = room.value ?? { title: t("Room"), code: "" };
   document.title = [code, title, "Racing Hexapods"].filter(Boolean).join(" · ");
 });
 let hasPicture = false;

@@ -1,6 +1,7 @@
 // The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
 import { computed, effect, signal, untracked } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { t } from "../../../js/format.js";
 import { noteWatched } from "../api.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { Loaded, loadPlan } from "../../../js/features.js";
@@ -118,7 +119,7 @@ export function ReplayBar() {
   if (replayProblem.value) return html`<p class="dim" role="status">${replayProblem}</p>`;
   if (plan.value === null) {
     return html`<p class="dim" role="status">${isAway.value
-      ? "The picture comes with the connection." : "Loading the picture…"}</p>`;
+      ? t("The picture comes with the connection.") : t("Loading the picture…")}</p>`;
   }
   const isAtEnd = playback.value?.ended ?? false;
   const isPlaying = page.moment.value === null && !isAtEnd;
@@ -127,7 +128,7 @@ export function ReplayBar() {
     <div class="replay-bar">
       <button class="quiet" onClick=${() => playReplay(!isPlaying)}>
         <${Icon} name=${isPlaying ? "pause" : isAtEnd ? "replay" : "play"} />
-        ${isPlaying ? "Pause" : isAtEnd ? "Again" : "Play"}
+        ${isPlaying ? t("Pause") : isAtEnd ? t("Again") : t("Play")}
       </button>
       <span class="replay-share" aria-hidden="true"><i style=${{ width: `${100 * share}%` }}></i></span>
       ${isBuffering.value && html`<span class="spinner" aria-hidden="true"></span>`}

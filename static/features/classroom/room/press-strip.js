@@ -1,6 +1,6 @@
 // The presses of a class as a strip: a bar up for each who pressed + for a step, down for each who pressed −.
 import { html } from "../../../js/components/elements.js";
-import { count } from "../../../js/format.js";
+import { t } from "../../../js/format.js";
 import { countsOf } from "./teaching.js";
 
 /** @import { StepPresses } from "../../../js/types.js" */
@@ -23,7 +23,7 @@ export function PressStrip({ presses, first, steps, own = {} }) {
     .filter(({ step }) => step >= first && step < first + steps);
   return html`
     <svg class="press-strip" viewBox=${`0 0 ${steps} ${HEIGHT}`} preserveAspectRatio="none" role="img"
-      aria-label=${`Of the class: ${count(praised, "step")} praised, ${rebuked} rebuked`}>
+      aria-label=${t("Of the class: {praised} {praised|step|steps} praised, {rebuked} rebuked", { praised, rebuked })}>
       <line x1="0" x2=${steps} y1=${HEIGHT / 2} y2=${HEIGHT / 2} />
       ${shown.map(({ step, plus, minus }) => html`
         <g key=${step} transform=${`translate(${step - first + 0.12} ${HEIGHT / 2})`}>

@@ -1,7 +1,7 @@
 // The kinds of questions: how each is asked, answered, told, shown to a class, and written in a lesson.
 import { signal } from "@preact/signals";
 import { html } from "../../../js/components/elements.js";
-import { distanceApart, metres, percentage } from "../../../js/format.js";
+import { decimal, distanceApart, metres, percentage, t } from "../../../js/format.js";
 import { linesOf, numberOf, parseNumber } from "../../../js/parse.js";
 import { agentOf, rangeOf } from "../../../js/settings.js";
 import { setEntry } from "../../../js/store.js";
@@ -69,23 +69,24 @@ const ChoiceEditor = ({ ask, change, id = "ask-choices" }) => html`
 
 /** @param {RightProps} props */
 const RightChoice = ({ ask, answer, change, isNeeded = false, id = "card-answer" }) => html`
-  <label for=${id}>The right answer${isNeeded ? "" : ", if the runs do not tell it"}</label>
+  <label for=${id}>${isNeeded ? t("The right answer") : t("The right answer, if the runs do not tell it")}</label>
   <select id=${id} value=${answer ?? ""}
     onChange=${(/** @type {any} */ { target }) => change(target.value || null)}>
-    <option value="">${isNeeded ? "Choose it" : "None: it follows from the runs"}</option>
+    <option value="">${isNeeded ? t("Choose it") : t("None: it follows from the runs")}</option>
     ${(ask.choices ?? []).map((choice) => html`<option key=${choice} value=${choice}>${choice}</option>`)}
   </select>
 `;
 
 /** @type {QuestionKind} */
 const CHOICE = {
-  title: "Choice",
+  title: t("Choice"),
   Control: Choice,
   answerOf: (draft) => draft,
   // The name of an agent stands for its win.
   inWords: (value) => agentOf(String(value)).title,
   scoreInWords: ({ share }, _, value) =>
-    (share === null ? null : `${agentOf(String(value)).title} won in ${percentage(share)} of all races.`),
+    (share === null ? null
+      : t("{robot} won in {share} of all races.", { robot: agentOf(String(value)).title, share: percentage(share) })),
   tally: (ask, values) =>
     (ask.choices ?? []).map((choice) => [choice, values.filter((value) => value === choice).length]),
   fieldsOf: (before) => ({ choices: before?.choices ?? [] }),
@@ -105,7 +106,7 @@ const limitsOf = ({ minimum, maximum }) => ({
 
 /** @type {QuestionKind["inWords"]} */
 const numberInWords = (value, { unit }) =>
-  (unit === "m" ? metres(value) : [value, unit].filter(Boolean).join("\u00a0"));
+  (unit === "m" ? metres(value) : [decimal(value), unit].filter(Boolean).join("\u00a0"));
 
 /** @param {ControlProps} props */
 function NumberControl({ ask, draft = "", locked, onValue }) {
@@ -133,7 +134,7 @@ function NumberControl({ ask, draft = "", locked, onValue }) {
 /** @param {{ ask: Ask, change: (changes: Partial<Ask>) => unknown }} props */
 const NumberEditor = ({ ask, change }) => html`
   <div class="number-rules">
-    ${[["minimum", "Least"], ["maximum", "Most"]].map(([name, title]) => html`
+    ${[["minimum", t("Least")], ["maximum", t("Most")]].map(([name, title]) => html`
       <label key=${name}>${title}
         <input type="text" inputmode="decimal" value=${/** @type {any} */ (ask)[name] ?? ""}
           onChange=${(/** @type {any} */ { target }) => change({ [name]: numberOf(target.value) })} />
@@ -148,21 +149,21 @@ const NumberEditor = ({ ask, change }) => html`
 
 /** @param {RightProps} props */
 const RightNumber = ({ answer, change, isNeeded = false, id = "card-answer" }) => html`
-  <label for=${id}>The right number${isNeeded ? "" : ", if the runs do not tell it"}</label>
+  <label for=${id}>${isNeeded ? t("The right number") : t("The right number, if the runs do not tell it")}</label>
   <input id=${id} type="text" inputmode="decimal" value=${answer ?? ""}
     onChange=${(/** @type {any} */ { target }) => change(numberOf(target.value))} />
 `;
 
 /** @type {QuestionKind} */
 const NUMBER = {
-  title: "Number",
+  title: t("Number"),
   Control: NumberControl,
   answerOf: (draft, ask) => parseNumber(draft, limitsOf(ask), false).value,
   inWords: numberInWords,
   scoreInWords({ quantile, error }, { unit }) {
     if (quantile === null || error === null) return null;
-    const below = `${percentage(quantile)} of all robots went less far than you said`;
-    return `${below}; you were ${errorInWords(error, unit)} from the typical one.`;
+    const values = { share: percentage(quantile), error: errorInWords(error, unit) };
+    return t("{share} of all robots went less far than you said; you were {error} from the typical one.", values);
   },
   metresOf({ unit }, values) {
     const per = PER_METRE[unit ?? "m"];
@@ -177,11 +178,12 @@ const NUMBER = {
 
 /** @type {QuestionKind["scoreInWords"]} */
 const fromCurve = ({ error }) =>
-  (error === null ? null : `On average you were ${distanceApart(error)} from the typical curve.`);
+  (error === null ? null
+    : t("On average you were {error} from the typical curve.", { error: distanceApart(error) }));
 
 /** @type {QuestionKind} */
 const POINT = {
-  title: "Point",
+  title: t("Point"),
   Control: Point,
   answerOf: (draft) => draft,
   inWords,
@@ -192,10 +194,10 @@ const POINT = {
 
 /** @type {QuestionKind} */
 const CURVE = {
-  title: "Curve",
+  title: t("Curve"),
   Control: Curve,
   answerOf: (draft, _, card) => knotsOf(stepsOf(card)).map((x, n) => [x, draft[n]]),
-  inWords: (value) => `from ${metres(value[0][1])} to ${metres(value.at(-1)[1])}`,
+  inWords: (value) => t("from {low} to {high}", { low: metres(value[0][1]), high: metres(value.at(-1)[1]) }),
   scoreInWords: fromCurve,
   onChart: (value, steps) => html`<path class="predicted-curve" d=${`M${lineOf(value, steps)}`} />`,
 };
@@ -242,8 +244,9 @@ export function Answer({ card, number, locked, actual = [] }) {
 export function scoreInWords({ score, prediction }, ask) {
   const answerScore = /** @type {Score} */ (score);
   if (answerScore.is_right !== null) {
-    const off = answerScore.error ? ` It is ${errorInWords(answerScore.error, ask.unit ?? "")} off.` : "";
-    return answerScore.is_right ? "You were right." : `That was not it.${off}`;
+    if (answerScore.is_right) return t("You were right.");
+    const off = answerScore.error && errorInWords(answerScore.error, ask.unit ?? "");
+    return off ? t("That was not it. It is {error} off.", { error: off }) : t("That was not it.");
   }
-  return KINDS[ask.kind].scoreInWords(answerScore, ask, prediction) ?? "Your prediction is kept.";
+  return KINDS[ask.kind].scoreInWords(answerScore, ask, prediction) ?? t("Your prediction is kept.");
 }

@@ -1,5 +1,6 @@
 // The room of this page as signals: what the server tells who asks, kept by its events, and what can be done in it.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
+import { t } from "../../../js/format.js";
 import { getAnyRun, getOptions, randomKey, roomAddressOf } from "../../../js/api.js";
 import * as api from "../api.js";
 import { storedText } from "../../../js/page.js";
@@ -82,7 +83,7 @@ export const toReplay = computed(() => {
 export const replayed = computed(() => toReplay.value?.id ?? null);
 
 /** Steps of a tab of the dashboard in which the own run is looked at closer. @type {Record<string, string>} */
-export const CLOSER = { why: "Why each move", gait: "Its gait", table: "Its table of values" };
+export const CLOSER = { why: t("Why each move"), gait: t("Its gait"), table: t("Its table of values") };
 
 /** A link to the dashboard with the own run, in the room's stage. @param {string} tab */
 export const closerLink = (tab) =>
@@ -287,7 +288,7 @@ export const remove = (withRuns) => perform("end", async () => {
   await api.deleteRoom(code, withRuns);
   batch(() => {
     room.value = null;
-    refusal.value = "You have deleted this room.";
+    refusal.value = t("You have deleted this room.");
   });
 });
 /** Time the race on the stage by a clock. @param {Clock} clock */

@@ -1,6 +1,6 @@
 // What is said of a participant's own run, on the phone and on the projector: of how far it came nothing before the
 // picture has got there.
-import { metres, whole } from "../../../js/format.js";
+import { metres, t } from "../../../js/format.js";
 import { isActive } from "../../../js/narrative/moment.js";
 
 /** @import { Run } from "../../../js/types.js" */
@@ -19,23 +19,24 @@ import { isActive } from "../../../js/narrative/moment.js";
 /** @type {Record<string, (known: KnownOwn) => RunSentence>} */
 const TABLE = {
   "queued": ({ run, isAway }) => {
-    const place = run.queue_position ? ` Place ${run.queue_position} in the queue.` : "";
-    return isAway ? { words: "Last known: your robot waits for its turn." }
-      : { words: `Your robot waits for its turn.${place}`, isBusy: true };
+    if (isAway) return { words: t("Last known: your robot waits for its turn.") };
+    const place = run.queue_position ? ` ${t("Place {place} in the queue.", { place: run.queue_position })}` : "";
+    return { words: t("Your robot waits for its turn.") + place, isBusy: true };
   },
   "computed": ({ run, isAway }) => {
     const { done, total } = run.progress;
-    const what = isAway ? "Last known" : run.kind === "race" ? "It races" : "It practises";
-    return { words: `${what}: step ${whole(done)} of ${whole(total)}`, share: total ? done / total : 0 };
+    const what = isAway ? t("Last known") : run.kind === "race" ? t("It races") : t("It practises");
+    return { words: t("{what}: step {done} of {total}", { what, done, total }), share: total ? done / total : 0 };
   },
   "arriving": ({ run }) => ({
-    words: run.kind === "race" ? "How far it came is told at time-out." : "How far it walks now is told at the end.",
+    words: run.kind === "race" ? t("How far it came is told at time-out.")
+      : t("How far it walks now is told at the end."),
   }),
   "arrived": ({ run, distance_m }) => ({
-    words: run.kind === "race" ? "your learner at time-out" : "in 50 steps, after its practice",
+    words: run.kind === "race" ? t("your learner at time-out") : t("in 50 steps, after its practice"),
     distance: metres(distance_m),
   }),
-  "lost": () => ({ words: "Your robot did not get to its end. Press Go again.", isBad: true }),
+  "lost": () => ({ words: t("Your robot did not get to its end. Press Go again."), isBad: true }),
 };
 
 /** @param {KnownOwn} known */

@@ -1,5 +1,5 @@
 // The axes of dots, and the units of questions.
-import { distanceApart } from "../../../js/format.js";
+import { decimal, distanceApart } from "../../../js/format.js";
 import { largest } from "../../../js/scale.js";
 
 const HEADROOM = 1.06;
@@ -16,5 +16,5 @@ export const PER_METRE = { m: 1, cm: 100 };
 /** An error in the unit of the question. @type {(error: number, unit: string | null | undefined) => string} */
 export function errorInWords(error, unit) {
   const per = PER_METRE[unit ?? "m"];
-  return per ? distanceApart(error / per) : `${Number(error.toPrecision(3))}${unit ? ` ${unit}` : ""}`;
+  return per ? distanceApart(error / per) : `${decimal(Number(error.toPrecision(3)))}${unit ? ` ${unit}` : ""}`;
 }

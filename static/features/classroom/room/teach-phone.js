@@ -1,7 +1,7 @@
 // A card on a participant's phone on which the class teaches: the robot, two buttons, and what the class presses.
 import { useEffect } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
-import { metres } from "../../../js/format.js";
+import { metres, t } from "../../../js/format.js";
 import { position } from "../../../js/player.js";
 import { rivalTeacher } from "./lane-names.js";
 import { Picture } from "./picture.js";
@@ -14,16 +14,16 @@ import { isTold, newestPress, ownPresses, press, pressProblem, teaching } from "
 /** Steps of the strip. */
 const STEPS = 16;
 const SAID = {
-  ready: "Your teacher starts the robot. Then press for what you see.",
-  teaching: "Press for the step that you see. You count once a step; the mean of the class teaches.",
-  frozen: "The robot waits.",
-  ended: "The robot has learned from you.",
+  ready: t("Your teacher starts the robot. Then press for what you see."),
+  teaching: t("Press for the step that you see. You count once a step; the mean of the class teaches."),
+  frozen: t("The robot waits."),
+  ended: t("The robot has learned from you."),
 };
 /** @type {Record<string, 1 | -1>} */
 const KEYS = { "+": 1, "=": 1, "-": -1, "\u2212": -1, "_": -1 };
 
 /** @type {[1 | -1, string, string][]} */
-const SIGNS = [[-1, "\u2212", "Minus: that was bad"], [1, "+", "Plus: that was good"]];
+const SIGNS = [[-1, "\u2212", t("Minus: that was bad")], [1, "+", t("Plus: that was good")]];
 
 const pressNow = (/** @type {1 | -1} */ value) => press(value, position.peek());
 
@@ -45,8 +45,8 @@ export function TeachOnPhone() {
     <section class="own-robot teach" aria-label="The robot of the class">
       <${Picture} />
       ${now && now.state !== "ready" && html`<${Moments} now=${now} />`}
-      <p class="teach-said" role="status">${now ? SAID[now.state] : "The robot comes…"}
-        ${now?.state === "ended" && !isTold.value && " Look to the front."}</p>
+      <p class="teach-said" role="status">${now ? SAID[now.state] : t("The robot comes…")}
+        ${now?.state === "ended" && !isTold.value && ` ${t("Look to the front.")}`}</p>
       ${pressProblem.value && isOn && html`<p class="teach-said bad" role="alert">${pressProblem}</p>`}
       ${now?.taught && isTold.value && html`<${Walks} now=${now} />`}
     </section>
@@ -79,8 +79,8 @@ const Buttons = ({ isOn }) => html`
 const Walks = ({ now }) => html`
   <div class="own-distance" role="status">
     <b class="num">${metres(now.taught?.distance_m ?? null)}</b>
-    <span class="dim">walks your robot in 50 steps; the one that
-      ${" "}${rivalTeacher(room.value?.shown.teach)} taught ${" "}
-      ${metres(now.rival?.distance_m ?? null)}</span>
+    <span class="dim">${t("walks your robot in 50 steps; the one that {teacher} taught {distance}", {
+      teacher: rivalTeacher(room.value?.shown.teach), distance: metres(now.rival?.distance_m ?? null),
+    })}</span>
   </div>
 `;

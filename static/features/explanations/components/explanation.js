@@ -1,5 +1,5 @@
 // An explained step: the move, its reason, and the update of the values, as the rule with its numbers.
-import { count, inMillimetres } from "../../../js/format.js";
+import { count, inMillimetres, t } from "../../../js/format.js";
 import { colourScale, comparedNumber, moveInWords, ruleNumber, stateInWords } from "../steps.js";
 import { percent, shareOf, valueColours } from "../../../js/scale.js";
 import { isAtLeast } from "../../../js/workspace.js";
@@ -18,7 +18,7 @@ const SHORTEST_BAR = 0.02;
 export const Reasons = ({ told: { why, missed, unexplained } }) => html`
   <section class="reasons">
     <h3>Why this move</h3>
-    <p class=${why ? "" : "dim"}>${why ?? sentenceOf(unexplained ?? "Its agent does not explain it")}</p>
+    <p class=${why ? "" : "dim"}>${why ?? sentenceOf(unexplained ?? t("Its agent does not explain it"))}</p>
     ${missed && html`<h3>What it missed</h3><p>${missed}</p>`}
   </section>
 `;
@@ -52,7 +52,9 @@ function Futures({ told }) {
   const { futures, compares } = /** @type {NonNullable<Explanation["search"]>} */ (told.search);
   const rows = futures.map(({ action, return_m, reward_m, steps, sequences }) => ({
     move: action, score: return_m,
-    note: `${inMillimetres(reward_m)} at once; ${count(sequences, "sequence")} of ${count(steps, "step")}`,
+    note: t("{reward} at once; {sequences} {sequences|sequence|sequences} of {steps} {steps|step|steps}", {
+      reward: inMillimetres(reward_m), sequences, steps,
+    }),
   }));
   return html`<${Ranking} told=${told} caption=${compares} rows=${rows} colour=${null} />`;
 }
@@ -61,7 +63,7 @@ function Futures({ told }) {
 function Scores({ told }) {
   const { scores, criterion } = /** @type {NonNullable<Explanation["choice"]>} */ (told.choice);
   const rows = scores.flatMap((row, pair) => row.map((score, cell) => ({
-    move: [pair, cell], score, note: triesOf(told, [pair, cell]) === 0 ? "never tried" : "",
+    move: [pair, cell], score, note: triesOf(told, [pair, cell]) === 0 ? t("never tried") : "",
   })));
   const scored = rows.filter(({ score }) => score !== null);
   const values = scored.map(({ score }) => Number(score));
@@ -100,9 +102,11 @@ function Ranking({ told, caption, rows, colour }) {
         `)}
       </tbody>
     </table>
-    ${all.length > shown.length && html`<p class="dim">and ${count(all.length - shown.length, "other move")}.</p>`}
+    ${all.length > shown.length && html`<p class="dim">${furtherMoves(all.length - shown.length)}</p>`}
   `;
 }
+
+const furtherMoves = (/** @type {number} */ moves) => t("and {moves} other {moves|move|moves}.", { moves });
 
 /** @type {(score: number, low: number, high: number, colour: { low: number, high: number } | null) => object} */
 const barOf = (score, low, high, colour) => ({
@@ -148,9 +152,11 @@ function Rule({ update, stored }) {
         `)}
       </dl>
       <p class="dim">${is_exact
-        ? "Computed again from these numbers, it is the stored value to the last bit."
-        : "Computed again from these numbers, it is not the stored value."}
-        ${stored !== null && stored !== after && ` Planning changed it further, to ${comparedNumber(stored, after)}.`}
+        ? t("Computed again from these numbers, it is the stored value to the last bit.")
+        : t("Computed again from these numbers, it is not the stored value.")}
+        ${stored !== null && stored !== after && ` ${t("Planning changed it further, to {value}.", {
+          value: comparedNumber(stored, after),
+        })}`}
       </p>
     </div>
   `;

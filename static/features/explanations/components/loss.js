@@ -1,6 +1,6 @@
 // Why a learner with a table loses: what it had tried, what better moves would have brought, and why it passed them.
 import { useEffect, useRef } from "preact/hooks";
-import { distanceApart, sentence } from "../../../js/format.js";
+import { distanceApart, sentence, t } from "../../../js/format.js";
 import { followLoss, isAbout, isOpen, isSought, loss, lostLane } from "../loss.js";
 import { standings } from "../../../js/race.js";
 import { messageOf, clockTitle } from "../../../js/titles.js";
@@ -52,10 +52,12 @@ function Answer({ asked }) {
 
 /** @param {{ loss: Loss }} props */
 function LossReasons({ loss: answer }) {
-  const ahead = standings.value?.find(({ lane }) => lane === answer.ahead)?.title ?? `lane ${answer.ahead + 1}`;
-  const when = answer.is_ranked ? ` at time-out (${clockTitle(answer.clock)})` : "";
+  const ahead = standings.value?.find(({ lane }) => lane === answer.ahead)?.title ??
+    t("lane {lane}", { lane: answer.ahead + 1 });
+  const values = { distance: distanceApart(answer.behind_m), robot: ahead, clock: clockTitle(answer.clock) };
   return html`
-    <p class="dim">${sentence(`${distanceApart(answer.behind_m)} behind ${ahead}${when}`)}.</p>
+    <p class="dim">${sentence(answer.is_ranked ? t("{distance} behind {robot} at time-out ({clock}).", values)
+      : t("{distance} behind {robot}.", values))}</p>
     ${answer.sentences.map((text) => html`<p>${text}</p>`)}
     <p class="dim fine">One step ahead only: the best next step is not always the best walk.</p>
   `;

@@ -1,7 +1,7 @@
 // Which step is looked at: that of the stage, or one that is chosen here.
 import { useEffect } from "preact/hooks";
 import { setStage } from "../../../js/actions.js";
-import { whole } from "../../../js/format.js";
+import { t, whole } from "../../../js/format.js";
 import { canPlay, shownRun } from "../../../js/on-stage.js";
 import { followChosenState } from "../posture.js";
 import { isOwn } from "../../../js/player.js";
@@ -40,8 +40,7 @@ export function Navigator({ at }) {
   const { step } = at;
   const last = lastStep.value;
   const lanes = scene.value?.lanes ?? [];
-  const followed = isOwn.value ? "replay" : "stage";
-  /** @param {{ target: HTMLInputElement }} event */
+    /** @param {{ target: HTMLInputElement }} event */
   const onInput = ({ target }) => {
     const number = Number(target.value);
     if (Number.isInteger(number) && number >= 1 && number <= last) chooseStep(number);
@@ -62,9 +61,11 @@ export function Navigator({ at }) {
           onClick=${() => chooseStep(step + 1)}>›</button>
       </div>
       ${isFollowing.value
-        ? html`<span class="dim">It follows the ${followed}.</span>`
+        ? html`<span class="dim">${isOwn.value ? t("It follows the replay.") : t("It follows the stage.")}</span>`
         : html`
-          <button class="secondary compact" onClick=${followStage}>Follow the ${followed}</button>
+          <button class="secondary compact" onClick=${followStage}>
+            ${isOwn.value ? t("Follow the replay") : t("Follow the stage")}
+          </button>
           ${canPlay.value && shownRun.value?.kind === "training" && html`<${ShowOnStage} step=${step} />`}
         `}
     </div>
@@ -81,7 +82,7 @@ function ShowOnStage({ step }) {
   };
   return html`
     <button class="secondary compact" onClick=${seek}>
-      <${Icon} name="play" /> Show ${isOwn.value ? "in the replay" : "on the stage"}
+      <${Icon} name="play" /> ${isOwn.value ? t("Show in the replay") : t("Show on the stage")}
     </button>
   `;
 }

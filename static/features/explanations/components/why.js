@@ -1,6 +1,6 @@
 // One step explained: the move, what it was worth, why it was made, and the update of the values.
 import { useEffect } from "preact/hooks";
-import { sentence, whole } from "../../../js/format.js";
+import { sentence, t } from "../../../js/format.js";
 import { moveTold } from "../../../js/headline.js";
 import { agentOf } from "../../../js/settings.js";
 import { explanation, isFollowing, moment, moveInWords } from "../steps.js";
@@ -19,7 +19,8 @@ export function Why() {
   const at = moment.value;
   const step = toldAbout(at);
   useEffect(() => {
-    moveTold.value = step ? wordsOf(step) : at && { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
+    moveTold.value = step ? wordsOf(step)
+      : at && { title: t("Step {step}", { step: at.step }), reason: "", color: "transparent" };
   }, [step, at?.step]);
   useEffect(() => () => (moveTold.value = null), []);
   if (!at) return html`<p class="dim">Once a run is on the stage, each of its steps is explained here.</p>`;

@@ -1,0 +1,67 @@
+// The catalogues of the page's texts, and how texts are looked up in them.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { LANGUAGES } from "../../static/js/page-state.js";
+import { t } from "../../static/js/format.js";
+import { keysIn, named, translated } from "../../static/js/translation.js";
+import { catalogues, keysOfModule, modules, placeholdersOf } from "./messages.js";
+import { PHONE, WATCH } from "./translated.js";
+
+/** A template as the tag gets it. @param {TemplateStringsArray} statics */
+const template = (statics, /** @type {unknown[]} */ ...fields) => ({ statics: [...statics], fields });
+
+test("there is a catalogue of each language but English", () => {
+  assert.deepEqual(Object.keys(catalogues()).sort(), Object.keys(LANGUAGES).filter((code) => code !== "en").sort());
+});
+
+test("a catalogue has every text of Watch and of a room's phone", () => {
+  const keys = [...WATCH, ...PHONE].flatMap(keysOfModule);
+  assert.ok(keys.length > 500);
+  for (const [code, { page }] of Object.entries(catalogues())) {
+    assert.deepEqual(keys.filter((key) => !page[key]), [], code);
+  }
+});
+
+test("a catalogue has no text that no module has", () => {
+  const keys = new Set(modules().flatMap(keysOfModule));
+  for (const [code, { page }] of Object.entries(catalogues())) {
+    assert.deepEqual(Object.keys(page).filter((key) => !keys.has(key)), [], code);
+  }
+});
+
+test("a translation has no other placeholders than its text, and no signs that a template would read", () => {
+  for (const { page, server } of Object.values(catalogues())) {
+    for (const [key, text] of Object.entries({ ...server, ...page })) {
+      assert.deepEqual(placeholdersOf(text).filter((name) => !placeholdersOf(key).includes(name)), [], text);
+      assert.doesNotMatch(text, /[<>"]/, key);
+    }
+  }
+});
+
+test("a text has its values, and the form of its noun that fits them", () => {
+  assert.equal(t("{steps} {steps|step|steps} of {robot}", { steps: 1, robot: "Greedy" }), "1 step of Greedy");
+  assert.equal(t("{steps} {steps|step|steps} of {robot}", { steps: 12_500, robot: "A" }), "12\u202f500 steps of A");
+});
+
+test("the texts of a template are those between its tags, and of attributes that are read", () => {
+  const { statics } = template`
+    <p class="dim" title="About it">Card ${1} of
+      ${2}</p>
+    <${3} name="play" label="Progress" /> ${4}
+  `;
+  assert.deepEqual(keysIn(statics), ["About it", "Card {0} of{1}", "Progress"]);
+});
+
+test("a translated template has its fields where the translation has them", () => {
+  const { statics, fields } = template`<p class=${"a"} title="About">Card ${1} of ${2}</p>${3}`;
+  const { statics: parts, order } = translated(statics, { "Card {0} of {1}": "{1}: {0}", "About": "Über" });
+  assert.deepEqual(parts, ["<p class=", ' title="Über">', ": ", "</p>", ""]);
+  assert.deepEqual(order.map((n) => fields[n]), ["a", 2, 1, 3]);
+});
+
+test("of an answer the titles are translated, and what people typed stays", () => {
+  const answer = { name: "Ice", worlds: [{ name: "Ice", title: "Ice", description: "Ice", settings: { default: "Ice" } }] };
+  assert.deepEqual(named(answer, { Ice: "Eis" }), {
+    name: "Ice", worlds: [{ name: "Ice", title: "Eis", description: "Eis", settings: { default: "Ice" } }],
+  });
+});
