@@ -54,7 +54,8 @@ test("the texts of a template are those between its tags, and of attributes that
 
 test("a translated template has its fields where the translation has them", () => {
   const { statics, fields } = template`<p class=${"a"} title="About">Card ${1} of ${2}</p>${3}`;
-  const { statics: parts, order } = translated(statics, { "Card {0} of {1}": "{1}: {0}", "About": "Über" });
+  const catalogue = { "Card {0} of {1}": "{1}: {0}", "About": "Über" };
+  const { statics: parts, order } = translated(statics, catalogue);
   assert.deepEqual(parts, ["<p class=", ' title="Über">', ": ", "</p>", ""]);
   assert.deepEqual(order.map((n) => fields[n]), ["a", 2, 1, 3]);
 });
