@@ -61,7 +61,8 @@ test("a translated template has its fields where the translation has them", () =
 });
 
 test("of an answer the titles are translated, and what people typed stays", () => {
-  const answer = { name: "Ice", worlds: [{ name: "Ice", title: "Ice", description: "Ice", settings: { default: "Ice" } }] };
+  const world = { name: "Ice", title: "Ice", description: "Ice", settings: { default: "Ice" } };
+  const answer = { name: "Ice", worlds: [world] };
   assert.deepEqual(named(answer, { Ice: "Eis" }), {
     name: "Ice", worlds: [{ name: "Ice", title: "Eis", description: "Eis", settings: { default: "Ice" } }],
   });
