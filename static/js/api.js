@@ -44,6 +44,8 @@ export class RequestError extends Error {
     this.status = status;
     this.fields = fields;
     this.legs = legs;
+    /** After how long the same request may be made again [s]; null where that is not told. @type {number | null} */
+    this.retry_s = null;
   }
 }
 
@@ -192,6 +194,16 @@ const parse = (text) => {
   }
 };
 
+/** @param {Response} response */
+async function refused(response) {
+  const error = refusal(response.status, parse(await response.text()) ?? {});
+  // Nothing was done where it is told.
+  if (/^\d+$/.test(response.headers?.get("Retry-After") ?? "")) {
+    error.retry_s = Number(response.headers.get("Retry-After"));
+  }
+  return error;
+}
+
 /**
  * @param {string} method
  * @param {string} path
@@ -211,7 +223,7 @@ export async function request(method, path, body, headers = {}) {
   }).catch(() => {
     throw new Unreachable();
   });
-  if (!response.ok) throw refusal(response.status, parse(await response.text()) ?? {});
+  if (!response.ok) throw await refused(response);
   return response;
 }
 

@@ -44,9 +44,10 @@ export const joinRoom = (code, key) => start(`${pathOf(code)}/participants`, {},
 export const leaveRoom = (code) => call("DELETE", `${pathOf(code)}/me`);
 /** @type {(code: string, card: number, value: unknown) => Promise<unknown>} */
 export const predict = (code, card, value) => call("POST", `${pathOf(code)}/predictions`, { card, value });
-/** Run what the card runs; a what-if is answered at once. */
-/** @type {(code: string, card: number, settings: Record<string, unknown>) => Promise<Run | WhatIfAnswer>} */
-export const startRun = (code, card, settings) => start(`${pathOf(code)}/runs`, { card, settings });
+/** Run what the card runs, once with the same key; a what-if is answered at once. */
+/** @typedef {Record<string, unknown>} CardSettings */
+/** @type {(code: string, card: number, settings: CardSettings, key: string) => Promise<Run | WhatIfAnswer>} */
+export const startRun = (code, card, settings, key) => start(`${pathOf(code)}/runs`, { card, settings }, key);
 /** The robots and the presses of a card that teaches. @type {(code: string) => Promise<TeachingState>} */
 export const getTeaching = (code) => call("GET", `${pathOf(code)}/teaching`);
 /** @type {(code: string) => Promise<TeachingState>} */

@@ -1,6 +1,6 @@
 // The robots from above, drawn by the messages that the 3D view would have drawn, where that cannot be had.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { metres } from "../format.js";
+import { metres, t } from "../format.js";
 import { drawHere } from "../page.js";
 import { bodiesOf, FINISH_M, LabelTexts, laneWidth, pathOf, placeOf, ticksOf, viewOf } from "../plan.js";
 import { drawIn } from "../player.js";
@@ -56,8 +56,8 @@ export function Plan({ isLost = false, retry, names = [] }) {
     return () => cancelAnimationFrame(due ?? 0);
   }, []);
   const { bodies, labels } = shown;
-  const words = isLost ? "The 3D graphics have failed. This is a plan from above."
-    : "No 3D graphics (WebGL) in this browser. This is a plan from above.";
+  const words = isLost ? t("The 3D graphics have failed. This is a plan from above.")
+    : t("No 3D graphics (WebGL) in this browser. This is a plan from above.");
   return html`
     <div class="plan">
       <div class="plan-track" ref=${host}>
@@ -89,7 +89,7 @@ function Track({ bodies, size: { width, height }, titles }) {
   const view = viewOf(bodies, { width, height: Math.max(1, height - 2 * FREE_PX) }, scene.value?.kind === "training");
   const words = titles.map(({ name, distance }) => `${name} ${distance}`.trim()).join("; ");
   return html`
-    <svg role="img" aria-label=${`Plan of the track from above. ${words}`} width=${width} height=${height}>
+    <svg role="img" aria-label=${t("Plan of the track from above. {words}", { words })} width=${width} height=${height}>
       <g transform=${`translate(0 ${FREE_PX})`}>
         <${Ground} bodies=${bodies} titles=${titles} view=${view} />
         ${bodies.map((body, n) => html`<${Robot} key=${body.lane} body=${body} title=${titles[n]} view=${view} />`)}
@@ -123,7 +123,7 @@ function Ground({ bodies, titles, view }) {
       <path class="tick" d=${line(y)} />${hasNumber && mark(y, y.toFixed(1).replace("-", "−"))}
     `)}
     <path class="start" d=${line(0)} /><path class="finish" d=${line(FINISH_M)} />
-    ${mark(0, "start")}${mark(FINISH_M, "finish")}
+    ${mark(0, t("start"))}${mark(FINISH_M, t("finish"))}
   `;
 }
 

@@ -216,7 +216,8 @@ function StagePlaceholder({ isLost }) {
           ${robots.map((agent, lane) => html`<${Robot} x=${LANES_X[lane]} color=${agentOf(agent).color} />`)}
         </g>
       </svg>
-      <p>${isLost ? "The 3D graphics were interrupted. The picture comes again…" : "Loading the picture…"}</p>
+      ${isLost ? html`<p>The 3D graphics were interrupted. The picture comes again…</p>`
+        : html`<p>Loading the picture…</p>`}
     </div>
   `;
 }

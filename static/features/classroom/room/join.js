@@ -4,15 +4,28 @@ import { html } from "../../../js/components/elements.js";
 import { isPolling } from "../../../js/events.js";
 import { isAway } from "../../../js/store.js";
 import { codeInGroups, t } from "../../../js/format.js";
+import { waits } from "./busy-server.js";
 import { busy, code as typedCode, failures, isRemoved, join, refusal, room } from "./room.js";
 
-/** Why something failed, beside its button. @param {{ at: string }} props */
+/** Why something failed, or what it waits for, beside its button. @param {{ at: string }} props */
 export const Failure = ({ at }) => html`
   <div role="alert">${failures.value[at] && html`<p class="problem">${failures.value[at]}</p>`}</div>
+  <div role="status">${waits.value[at] && html`<${Wait} ...${waits.value[at]} />`}</div>
+`;
+
+/** That a request is made again by itself. @param {{ words: string, left_s: number }} props */
+const Wait = ({ words, left_s }) => html`
+  <p>
+    <span class="spinner" aria-hidden="true"></span> ${words} This page tries again by
+    itself<span aria-hidden="true"> in ${left_s} s</span>.
+  </p>
 `;
 
 export const Waiting = () => html`
-  <main class="door"><p role="status"><span class="spinner" aria-hidden="true"></span> Looking for the room…</p></main>
+  <main class="door">
+    ${waits.value.room ? html`<div role="status"><${Wait} ...${waits.value.room} /></div>`
+      : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Looking for the room…</p>`}
+  </main>
 `;
 
 /** Where there is no room of this code: why, and a field for another one. */

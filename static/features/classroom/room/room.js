@@ -3,6 +3,7 @@ import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { t } from "../../../js/format.js";
 import { getAnyRun, getOptions, randomKey, roomAddressOf } from "../../../js/api.js";
 import * as api from "../api.js";
+import { whenAdmitted } from "./busy-server.js";
 import { storedText } from "../../../js/page.js";
 import { ownAddress } from "../../../js/page-state.js";
 import { makeRequests } from "../../../js/requests.js";
@@ -99,7 +100,7 @@ export const goesOn = (run) => run !== null && !ENDED.includes(run.state);
 /** Ask for the room anew. */
 export async function refresh() {
   try {
-    const answer = await api.getRoom(code);
+    const answer = await (room.peek() ? api.getRoom(code) : whenAdmitted("room", () => api.getRoom(code)));
     batch(() => {
       // The room forgets who was in it once it has ended; this page does not.
       const { role, me } = room.peek() ?? answer;
@@ -238,7 +239,8 @@ const changed = (send) => async () => {
 export const join = () => perform("join", async () => {
   // Kept, so that it is the same for both tabs of a browser, and after a reload that came before the answer.
   const key = storedText(`join:${room.peek()?.code}`, randomKey());
-  await api.joinRoom(code, key.peek());
+  // A seat of a room that is full may become free.
+  await whenAdmitted("join", () => api.joinRoom(code, key.peek()), { longest_s: Infinity });
   isRemoved.value = false;
   await refresh();
 });
@@ -255,7 +257,7 @@ export const leave = () => perform("leave", async () => {
 export const lock = (value) => perform("lock", async () => {
   const { card = 0 } = room.peek() ?? {};
   try {
-    await api.predict(code, card, value);
+    await whenAdmitted("lock", () => api.predict(code, card, value));
   } finally {
     // Where the answer was lost, or another tab was first, the locked one is shown.
     await refresh();
@@ -265,7 +267,8 @@ export const lock = (value) => perform("lock", async () => {
 /** Run what the card runs, with these settings. @param {Record<string, unknown>} settings */
 export const go = (settings) => perform("go", async () => {
   const { card = 0 } = room.peek() ?? {};
-  const answer = await api.startRun(code, card, settings);
+  const key = randomKey();
+  const answer = await whenAdmitted("go", () => api.startRun(code, card, settings, key));
   if ("chosen" in answer) {
     await refreshResults();
     return;
