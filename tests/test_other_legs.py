@@ -209,7 +209,7 @@ def test_other_legs_are_recorded_analysed_drawn_and_exported(robot: Robot, joint
 
     drawn = RobotMesh(robot).body_poses(lane.rest_qpos).positions
     assert len(drawn) == 2 + joints + len(legs)  # world and torso, links, feet
-    assert 'id="segment-0"' in hx.view(race).page
+    assert 'id="segment-paper-0"' in hx.view(race).page
 
 
 def test_joints_that_are_held_straight_change_little() -> None:

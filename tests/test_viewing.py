@@ -4,6 +4,7 @@ import html
 import io
 import os
 import re
+from email.message import Message
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,18 @@ def test_without_scripts_a_notebook_shows_a_picture_and_how_to_play_it(
     assert os.path.lexists("my race.html")
 
 
+def test_the_sentence_links_to_the_documentation_that_the_package_states(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    metadata = Message()
+    monkeypatch.setattr("importlib.metadata.metadata", lambda _: metadata)
+    view = hx.View("A race", "<p>", b"", "")
+    assert "<a " not in view._repr_html_()
+    metadata["Project-URL"] = "Issues, https://code.test/issues"
+    metadata["Project-URL"] = "Documentation, https://code.test/docs?a&b"
+    assert '<a href="https://code.test/docs?a&amp;b">Documentation</a>' in view._repr_html_()
+
+
 @pytest.mark.test
 def test_a_training_walks_alone() -> None:
     training = hx.train(steps=20, simulator="kinematic", seed=3)
@@ -65,6 +78,11 @@ def test_a_browser_opens_a_file_that_the_next_replaces(
 def test_a_title_is_a_text() -> None:
     with pytest.raises(hx.InvalidInput, match="title is a text, not 3"):
         hx.view(hx.race(["wave"], steps=2, simulator="kinematic"), title=3)  # type: ignore[arg-type]
+
+
+def test_no_clock_is_refused() -> None:
+    with pytest.raises(hx.InvalidInput, match="paper, wall or free, or several of them"):
+        hx.view(hx.race(["wave"], steps=2, simulator="kinematic"), clock=[])
 
 
 def test_an_unknown_clock_is_refused() -> None:

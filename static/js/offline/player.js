@@ -55,7 +55,7 @@ const clocks = make("select",
 const bar = make("div", { className: "player" }, play,
   stepButton(-1, "One robot step back", "◂"), stepButton(1, "One robot step on", "▸"), slider, position, clocks, speeds,
   directed);
-const notes = make("span");
+const notes = make("span", { className: "notes" });
 const heading = make("div", { className: "replay-title" }, make("b", {}, replay.title), " ", notes,
   ...errors.map((error) => make("span", { className: "error", role: "alert" }, error)));
 

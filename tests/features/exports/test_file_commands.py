@@ -46,7 +46,7 @@ def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     assert "no run 'nope'" in write("nope", "--out", "w.csv")
     assert f"{TRAINING} is finished and has no recording" in write(TRAINING, "--out", "w.csv")
     done = in_process("runs", "page", RACED, "--out", "r.html", *data_option, folder=tmp_path)
-    assert re.fullmatch(rf"Race {RACED} is in r.html \(\d+ kB\).\n", done.stdout)
+    assert re.fullmatch(rf"Race {RACED} is in r.html \([\d.,]+ [kM]B\).\n", done.stdout)
 
 
 def test_video_without_opengl_names_its_packages(data: Path, tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def test_page_of_a_race_is_a_file_with_its_own_policy(api: Api, raced: dict[str,
     assert answer.status_code == 200
     assert f'filename="race-{raced["id"]}.html"' in answer.headers["content-disposition"]
     assert answer.text.count('<meta http-equiv="Content-Security-Policy" content="default-src') == 1
-    assert 'id="segment-0"' in answer.text
+    assert all(f'id="segment-{clock}-0"' in answer.text for clock in ("free", "paper", "wall"))
     refused(api.call("GET", "/runs/nothing/page"), 404, "nothing")
 
 
