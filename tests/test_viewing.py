@@ -56,6 +56,17 @@ def test_the_sentence_links_to_the_documentation_that_the_package_states(
 
 
 @pytest.mark.test
+def test_a_notebook_has_the_page_the_picture_and_a_line_of_text() -> None:
+    from IPython.core.formatters import DisplayFormatter  # half a second
+
+    view = hx.View("A race", "<p>", b"\x89PNG", "")
+    bundle, _ = DisplayFormatter().format(view)  # type: ignore[no-untyped-call]
+    assert set(bundle) == {"text/html", "image/png", "text/plain"}
+    assert bundle["image/png"] == view.picture
+    assert bundle["text/plain"].startswith("<View of A race: ")
+
+
+@pytest.mark.test
 def test_a_training_walks_alone() -> None:
     training = hx.train(steps=20, simulator="kinematic", seed=3)
     assert hx.view(training).title == "Q-learning: 50 steps"

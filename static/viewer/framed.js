@@ -6,7 +6,8 @@
 //                     {type: "hexapods:still"}: asks for the picture
 //   to the parent     {type: "hexapods:status", status: "connected" when it can draw, "drawn" when it shows something,
 //                     "lost" when the browser has taken its WebGL context, "no-webgl" where there is none}
-//                     {type: "hexapods:still", picture: ImageBitmap, horizon, camera: {position, look_at}}
+//                     {type: "hexapods:still", picture: ImageBitmap, horizon, camera: {position, look_at, fov}},
+//                     places in metres, the angle from top to bottom in radians
 //                     {type: "hexapods:taken"}: the viewer has taken the camera, by hand
 //                     {type: "hexapods:key", key}
 (() => {
@@ -33,7 +34,8 @@
     const { canvas, camera, cameraControl } = window.__viserMutable ?? {};
     if (!canvas?.width || !camera) return;
     const target = cameraControl.getTarget(camera.position.clone());
-    const places = { position: inRun(camera.position), look_at: inRun(target) };
+    const fov = (camera.fov * Math.PI) / 180;
+    const places = { position: inRun(camera.position), look_at: inRun(target), fov };
     const horizon = root.style.getPropertyValue("--horizon");
     const picture = await createImageBitmap(canvas);
     tellParent({ type: "hexapods:still", picture, horizon, camera: places }, [picture]);

@@ -169,7 +169,8 @@ def test_a_race_plays_from_its_file_and_in_a_foreign_page(offline: Page, race_fi
 
 def test_a_script_of_a_foreign_page_sets_camera_and_moment(offline: Page, race_file: Path) -> None:
     host = race_file.with_name("host.html")
-    host.write_text(HOST.replace("race.html", "race.html?t=noon&clock=free&follow=2"))
+    address = "race.html?t=noon&clock=free&follow=2&position=0.5,-0.3,0.4&look_at=0,0.1,0.1"
+    host.write_text(HOST.replace("race.html", address))
     offline.goto(host.as_uri())
     frame = offline.frame_locator("iframe")
     sentence = 't must be a number, not "noon" (in the address)'
@@ -207,6 +208,7 @@ def test_a_script_of_a_foreign_page_sets_camera_and_moment(offline: Page, race_f
     def near(first: list[float], second: list[float]) -> bool:
         return bool(np.abs(np.subtract(first, second)).max() < 1e-4)
 
+    wait_until(lambda: near(camera()[0], [0.5, -0.3, 0.4]) and near(camera()[1], [0, 0.1, 0.1]))
     place, target = [0.6, -0.4, 0.3], [0.0, 0.1, 0.05]
     say(position=place, look_at=target)
     wait_until(lambda: near(camera()[0], place) and near(camera()[1], target))

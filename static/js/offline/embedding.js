@@ -6,7 +6,9 @@ import { commandOf, InvalidCommand } from "./commands.js";
 /** What every message from this page tells. @param {Player} player */
 const stateOf = (player) => {
   const { time_s, duration_s, paused, speed, clock, follow } = player;
-  return { time_s, duration_s, paused, speed, clock, follow, camera: player.view.camera, live: player.view.isLive };
+  const { camera: kept, isLive: live } = player.view;
+  const camera = kept && { position: kept.position, look_at: kept.look_at };
+  return { time_s, duration_s, paused, speed, clock, follow, camera, live };
 };
 
 /** Names the message that is answered, if that has a name. @type {(id: unknown) => object} */

@@ -40,7 +40,7 @@ export class Player extends EventTarget {
   #shown = NOWHERE;
   #follower = new Follower();
   #followed = DIRECTED;
-  /** Where the camera was placed last. @type {CameraPlace} */
+  /** Where the camera was placed last, or taken by hand. @type {CameraPlace & { fov?: number }} */
   #placed = {};
   /** The figures of the moment that is shown. @type {any} */
   #figures = null;
@@ -56,6 +56,9 @@ export class Player extends EventTarget {
     this.read = read;
     this.view = view;
     [this.#plan] = replay.plans;
+    // With its first picture the client has put the camera where it begins.
+    view.addEventListener("drawn", () => this.isTaken && this.#place(this.#placed));
+    view.addEventListener("lost", () => this.pause());
     view.addEventListener("kept", () => {
       if (this.isTaken && view.camera) this.#placed = view.camera;
     });
@@ -169,21 +172,21 @@ export class Player extends EventTarget {
     requestAnimationFrame(loop);
   }
 
-  /** Draw all in a view that shows nothing yet; a camera that was taken stands where it stood. */
+  /** Draw all in a view that shows nothing yet. */
   #restart() {
     const scene = /** @type {SceneState} */ (this.#scene);
     this.view.draw(scene.restart());
     this.#shown = NOWHERE;
     this.#direct();
-    if (this.isTaken) this.#place(this.#placed);
     this.#show(Infinity);
   }
 
-  /** @param {CameraPlace} camera */
-  #place({ position, look_at }) {
+  /** @param {CameraPlace & { fov?: number }} camera */
+  #place({ position, look_at, fov }) {
     const messages = [];
     if (position) messages.push({ type: "SetCameraPositionMessage", position, initial: false });
     if (look_at) messages.push({ type: "SetCameraLookAtMessage", look_at, initial: false });
+    if (fov) messages.push({ type: "SetCameraFovMessage", fov, initial: false });
     if (messages.length) this.view.draw(messages);
   }
 
@@ -196,7 +199,9 @@ export class Player extends EventTarget {
   #tick(/** @type {number} */ now) {
     const elapsed_s = Math.min((now - this.#lastTick) / 1000, LONGEST_TICK_S);
     this.#lastTick = now;
-    if (this.#isPlaying && this.#show(elapsed_s)) {
+    // A picture that nobody sees would be over before it is drawn.
+    const isSeen = this.view.isLive || !this.view.isAvailable;
+    if (this.#isPlaying && isSeen && this.#show(elapsed_s)) {
       this.#time_s = inRecording(this.#plan.recorded_s, this.#time_s + elapsed_s * this.#speed);
       if (this.#time_s >= this.duration_s - SAME_S) this.#isPlaying = false;
       if (!this.#isPlaying || now - this.#toldAt >= UPDATE_MS) this.#tell(now);

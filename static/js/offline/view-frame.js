@@ -4,16 +4,17 @@
 
 /** After the frame was asked for its last picture, it is removed, whether that has come or not [ms]. */
 const LAST_PICTURE_MS = 400;
-/** A picture is kept when nothing has moved for so long [ms]. */
-const SETTLED_MS = 300;
+/** A picture is kept when nothing has moved for so long; meshes are loaded by then [ms]. */
+const SETTLED_MS = 1000;
 
 /** @typedef {import("../replay-frames.js").Message} Message */
-/** Where the camera is [m]. @typedef {{ position: number[], look_at: number[] }} Camera */
+/** Where the camera is [m], and its angle from top to bottom [rad]. */
+/** @typedef {{ position: number[], look_at: number[], fov: number }} Camera */
 
 /**
- * Dispatches `connected` when a frame can draw, and has an empty scene; `drawn` when it shows something; `unavailable`
- * where the browser has no WebGL; `kept` when it has kept a picture and where the camera was; `taken` and `key`
- * (`detail`) as viewer/framed.js has them.
+ * Dispatches `connected` when a frame can draw, and has an empty scene; `drawn` when it shows something; `lost` when
+ * the browser has taken its context; `unavailable` where there is no WebGL; `kept` when it has kept a picture and where
+ * the camera was; `taken` and `key` (`detail`) as viewer/framed.js has them.
  */
 export class ViewFrame extends EventTarget {
   /** @type {HTMLIFrameElement | null} */
@@ -46,6 +47,8 @@ export class ViewFrame extends EventTarget {
 
   /** Whether the view is drawn, and no picture of it shown. */
   get isLive() { return this.#isDrawn; }
+  /** Whether the browser can draw it. */
+  get isAvailable() { return this.#isAvailable; }
   /** Where the camera was when its last picture was kept; null if there is none. */
   get camera() { return this.#camera; }
 
@@ -135,6 +138,7 @@ export class ViewFrame extends EventTarget {
     } else if (status === "lost") {
       this.#isLost = true;
       this.#remove();
+      this.dispatchEvent(new Event("lost"));
     } else if (status === "no-webgl") {
       this.#isAvailable = false;
       this.#remove();
