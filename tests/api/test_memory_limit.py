@@ -43,7 +43,9 @@ class AsOperator:
 @pytest.fixture
 def port() -> Iterator[int]:
     app = AsOperator(BodyMemoryLimit(answer))
-    config = uvicorn.Config(app, host="127.0.0.1", port=0, lifespan="off", log_level="critical")
+    config = uvicorn.Config(
+        app, host="127.0.0.1", port=0, lifespan="off", ws="none", log_level="critical"
+    )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
     thread.start()

@@ -64,6 +64,6 @@ test("of an answer the titles are translated, and what people typed stays", () =
   const world = { name: "Ice", title: "Ice", description: "Ice", settings: { default: "Ice" } };
   const answer = { name: "Ice", worlds: [world] };
   assert.deepEqual(named(answer, { Ice: "Eis" }), {
-    name: "Ice", worlds: [{ name: "Ice", title: "Eis", description: "Eis", settings: { default: "Ice" } }],
+    name: "Ice", worlds: [{ ...world, title: "Eis", description: "Eis" }],
   });
 });

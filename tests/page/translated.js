@@ -9,8 +9,9 @@ export const WATCH = [
   "static/js/narrative/sentences.js", "static/js/on-stage.js", "static/js/page-state.js", "static/js/player.js",
   "static/js/settings.js", "static/js/time.js", "static/js/titles.js", "static/js/training.js",
   "static/js/workspace.js",
-  ...["app", "board", "charts", "crosshair", "elements", "foot", "help", "menu", "own-choices", "panel", "run-charts",
-    "run-notices", "stage", "stage-notes", "time-bar", "work-buttons"].map((name) => `static/js/components/${name}.js`),
+  ...["app", "board", "charts", "crosshair", "elements", "foot", "help", "menu", "own-choices", "panel", "plan",
+    "run-charts", "run-notices", "stage", "stage-notes", "time-bar", "work-buttons"]
+    .map((name) => `static/js/components/${name}.js`),
   "static/features/classroom/feature.js", "static/features/classroom/first-lesson.js",
   ...["explanation", "loss", "navigator", "why"].map((name) => `static/features/explanations/components/${name}.js`),
   "static/features/explanations/steps.js",
