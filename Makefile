@@ -15,7 +15,7 @@ PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
 # Figures for papers, which the page offers, and PostgreSQL for the container; the checks need all but the deep network.
 RUN_EXTRAS := figures postgres
-DEV_EXTRAS := $(RUN_EXTRAS) cluster gym mcap parquet tuning video
+DEV_EXTRAS := $(RUN_EXTRAS) cluster gym mcap mcp parquet tuning video
 # On two cores: while one waits, for a process or a timer, two others work.
 TEST_PROCESSES := 3
 

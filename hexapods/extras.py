@@ -20,6 +20,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "figures": ("matplotlib",),
     "gym": ("gymnasium",),
     "mcap": ("foxglove",),
+    "mcp": ("mcp",),
     "parquet": ("pyarrow",),
     "postgres": ("psycopg",),
     "video": ("imageio_ffmpeg", "OpenGL"),

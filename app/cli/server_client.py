@@ -14,6 +14,10 @@ from hexapods.domain.errors import InvalidInput
 _TIMEOUT_S = 60.0
 
 
+class NoServer(InvalidInput):
+    """No server answers for the data folder."""
+
+
 def call_server(
     settings: Settings,
     method: str,
@@ -31,7 +35,8 @@ def call_server(
         media_type: of a body of bytes.
 
     Raises:
-        InvalidInput: if the server does not respond, or refuses.
+        NoServer: if it does not respond.
+        InvalidInput: if it refuses.
     """
     if body is not None and not isinstance(body, bytes):
         body, media_type = json.dumps(body).encode(), "application/json"
@@ -49,7 +54,7 @@ def _request(
 ) -> bytes:
     address = read_address_file(settings.data)
     if address is None:
-        raise InvalidInput(
+        raise NoServer(
             f"another process has the data folder {settings.data}, and does not say where it "
             "listens; try again in a moment, or once it has ended if it is a command with --keep"
         )
@@ -68,7 +73,7 @@ def _request(
         with error:
             raise InvalidInput(_refusal(address, error)) from error
     except OSError as error:
-        raise InvalidInput(
+        raise NoServer(
             f"the server that has the data folder {settings.data} does not answer at {address}; "
             "look at its log, or stop it"
         ) from error
