@@ -1,8 +1,8 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
 - Routes: `starts` (whose bodies name agents), `trainings`, `races` (with `runs` in common),
-  `robot_preview`, `replays`, `stage`, `spectators`, `events`, `options`,
-  `monitoring`; `pages` and `docs`.
+  `robot_preview`, `replays`, `stage`, `spectators` (at addresses that are `reachable`), `events`,
+  `options`, `monitoring`; `pages` and `docs`.
 - Requests: `agent_bodies`, `schemas`, `fields`, `descriptions`, `formats`.
 - Answers: `record_response` (returns a record), `answers`, `run_views` (with kinds of runs that
   features add), `recorded_answers`, `option_answers` (from `option_texts` and `robot_options`),

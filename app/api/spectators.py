@@ -1,6 +1,5 @@
 """Route of the address at which others watch, with its QR code; used by `serve --share`, too."""
 
-import socket
 from functools import lru_cache
 from typing import NamedTuple
 from urllib.parse import urlsplit
@@ -11,12 +10,12 @@ from fastapi import Request
 from app.answer import Answer, Count
 from app.api.deps import ServicesDep, StageDep
 from app.api.policy import WATCH, api_router, policy
+from app.api.reachable import machine_addresses, reachable_first, url_of, why_unreachable
 from app.api.record_response import RecordResponse
 from app.api.stage_paths import stage_of
 from app.setting_fields import PREFIX
 from app.settings import Settings, is_loopback
 
-_WILDCARDS = ("0.0.0.0", "::")  # noqa: S104 - compared, not bound
 _NEEDS_TOKEN = (
     f"There is no address for everyone: watching needs the token ({PREFIX}SPECTATORS=token)."
 )
@@ -49,7 +48,7 @@ def get_spectators(
     """Return the address at which others watch, or why there is none, and its QR code."""
     is_public = shared.roles.is_public
     address = address_for_others(request, services.settings) if is_public else None
-    reason = _LOOPBACK_ONLY if is_public else _NEEDS_TOKEN
+    reason = why_none(services.settings) if is_public else _NEEDS_TOKEN
     spectators = SpectatorsView(
         address=address,
         qr_code=None if address is None else qr_image(address),
@@ -101,28 +100,28 @@ def qr_code(address: str) -> segno.QRCode:
     return segno.make(address, micro=False)
 
 
-def shared_address(settings: Settings, port: int) -> str:
-    """Return the address of the page for other machines, with a slash at the end.
+def shared_addresses(settings: Settings, port: int) -> dict[str, str]:
+    """Return the addresses of the page for other machines, the likeliest first.
 
     Args:
         settings: settings of the server.
         port: the port on which it listens.
+
+    Returns:
+        The interface of each address, with a slash at the end; an empty name where the
+        settings have the address. Nothing where other machines reach none.
     """
     if settings.public_url is not None:
-        return f"{settings.public_url.rstrip('/')}/"
-    host = local_address() if settings.host in _WILDCARDS else settings.host
-    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
+        return {f"{settings.public_url.rstrip('/')}/": ""}
+    reachable = reachable_first(machine_addresses(settings.host))
+    return {url_of(address.host, port): address.interface for address in reachable}
 
 
-def local_address() -> str:
-    """Return this machine's address in the local network, as a connected UDP socket has it."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.connect(("192.0.2.1", 9))  # TEST-NET-1 (RFC 5737); nothing is sent
-            address: str = probe.getsockname()[0]
-        except OSError:
-            return "127.0.0.1"
-    return address
+def why_none(settings: Settings) -> str:
+    """Return why other machines reach no address of the server."""
+    if is_loopback(settings.host):
+        return _LOOPBACK_ONLY
+    return why_unreachable(settings.host, machine_addresses(settings.host))
 
 
 def address_for_others(request: Request, settings: Settings) -> str | None:
@@ -134,4 +133,4 @@ def address_for_others(request: Request, settings: Settings) -> str | None:
             return f"{str(request.base_url).rstrip('/')}/"
         if is_loopback(settings.host):
             return None
-    return shared_address(settings, request.scope["server"][1])
+    return next(iter(shared_addresses(settings, request.scope["server"][1])), None)

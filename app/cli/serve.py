@@ -133,13 +133,27 @@ def read_token() -> str | None:
 
 
 def show_links(settings: Settings, port: int) -> None:
-    """Print the links of operators and of others, the latter also as a QR code."""
-    from app.api.spectators import qr_code, shared_address  # noqa: PLC0415 - as for `serve` above
+    """Print the links of operators and of others, the latter also as a QR code.
 
-    address = shared_address(settings, port)
+    Of several addresses the likeliest has the code, and the others are listed. Where phones reach
+    none, there is the reason instead of a code.
+    """
+    from app.api.reachable import url_of  # noqa: PLC0415 - as for `serve` above
+    from app.api.spectators import qr_code, shared_addresses, why_none  # noqa: PLC0415 - as above
+
+    addresses = shared_addresses(settings, port)
+    local = url_of(settings.host if is_loopback(settings.host) else "127.0.0.1", port)
+    address, *others = addresses or [local]
     print(f"Operator (may start and stop):  {address}?token={settings.token}")
     audiences = [of_feature.audience for of_feature in settings.features if of_feature.audience]
     for audience in audiences or ["Spectators (may watch)"]:
         print(f"{audience + ':':32}{address}")
-    qr_code(address).terminal(out=sys.stdout, compact=True)
+    if addresses:
+        qr_code(address).terminal(out=sys.stdout, compact=True)
+    else:
+        print(why_none(settings))
+    if others:
+        print(f"The code is for {addresses[address]}. If phones cannot open it, try:")
+    for other in others:
+        print(f"  {other}  ({addresses[other]})")
     sys.stdout.flush()

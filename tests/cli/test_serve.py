@@ -10,6 +10,7 @@ from typing import IO
 import httpx2
 import pytest
 
+from app.api.reachable import machine_addresses, reachable_first
 from tests.cli.running import refusal
 from tests.features.needing import needs
 from tests.forked import start_hexapods
@@ -44,6 +45,20 @@ def test_shared_links_are_printed_when_the_server_answers(tmp_path: Path) -> Non
         spectators = next(printed)
         assert spectators.startswith("Spectators")
         assert f":{port}/" in spectators
+        # No phone can open it: why, and no code.
+        assert next(printed).startswith("Only this machine can open this page; to let others watch")
+
+
+def test_a_shared_server_prints_a_code_of_the_address_of_the_network(tmp_path: Path) -> None:
+    addresses = reachable_first(machine_addresses("0.0.0.0"))
+    with serving(tmp_path, "--share") as printed:
+        line = next(line for line in printed if line.startswith("Spectators"))
+        after = next(printed)
+    if addresses:
+        assert line.split()[-1].startswith(f"http://{addresses[0].host}:")
+        assert "\x1b[" in after or "█" in after
+    else:
+        assert after.startswith("Phones cannot reach this machine")
 
 
 @pytest.mark.parametrize("is_option", [True, False])
