@@ -24,7 +24,8 @@ release = version = hexapods.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 html_theme = "furo"
 html_title = f"Racing Hexapods {version}"
-html_static_path: list[str] = []
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
 exclude_patterns = ["reproduction", "notebooks"]
 source_suffix = {".md": "markdown"}
 myst_heading_anchors = 3
@@ -113,7 +114,7 @@ def _operation(method: str, path: str, operation: dict[str, Any]) -> Iterator[st
     yield operation.get("description", "")
     parameters = [parameter for parameter in operation.get("parameters", ()) if "name" in parameter]
     if parameters:
-        yield "\n| parameter | in | |\n|---|---|---|"
+        yield "\n| parameter | in | meaning |\n|---|---|---|"
         for parameter in parameters:
             description = _cell(parameter.get("description", ""))
             yield f"| `{parameter['name']}` | {parameter['in']} | {description} |"
