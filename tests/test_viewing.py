@@ -60,7 +60,7 @@ def test_a_notebook_has_the_page_the_picture_and_a_line_of_text() -> None:
     from IPython.core.formatters import DisplayFormatter  # half a second
 
     view = hx.View("A race", "<p>", b"\x89PNG", "")
-    bundle, _ = DisplayFormatter().format(view)  # type: ignore[no-untyped-call]
+    bundle, _ = DisplayFormatter().format(view)
     assert set(bundle) == {"text/html", "image/png", "text/plain"}
     assert bundle["image/png"] == view.picture
     assert bundle["text/plain"].startswith("<View of A race: ")
