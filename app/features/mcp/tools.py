@@ -17,6 +17,7 @@ from hexapods.domain.gait import DEFAULT_GAIT
 from hexapods.experiments.comparing import compare
 from hexapods.experiments.comparison import Group
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
+from hexapods.runs.race_config import MAX_LANES
 
 MOST_LISTED = 50
 """Runs of a page of a listing."""
@@ -76,10 +77,12 @@ class Tools:
         lane: Annotated[int, Field(ge=0, description="of a race, from 0 on")] = 0,
     ) -> ExplainedStep:
         """Explain why a robot made a step: what it brought, why this move, what it missed."""
-        told = self._get(f"runs/{quote(run_id, safe='')}/explain", step=step, lane=lane)
-        update = (told["update"] or {}).get("direct") or {}
+        path = f"runs/{quote(run_id, safe='')}/explain"
+        explanation = self._get(path, step=step, lane=lane)
+        update = (explanation["update"] or {}).get("direct") or {}
         names = ExplainedStep.model_fields.keys() - {"rule"}
-        return ExplainedStep(**{name: told[name] for name in names}, rule=update.get("numbers"))
+        shared = {name: explanation[name] for name in names}
+        return ExplainedStep(**shared, rule=update.get("numbers"))
 
     def compare_settings(
         self,
@@ -138,7 +141,7 @@ class Tools:
     def start_race(
         self,
         *,
-        lanes: Annotated[list[RacingLane], Field(min_length=1, max_length=8)],
+        lanes: Annotated[list[RacingLane], Field(min_length=1, max_length=MAX_LANES)],
         gait: Gait = DEFAULT_GAIT,
         steps: Annotated[int, Field(ge=1, description="of each lane")] = RACE_STEPS,
         seed: Seed = TrainingConfig.seed,
