@@ -2,12 +2,14 @@
 // where the page's HTML says that language (app/api/pages.py). English texts are the keys of catalogues.
 import htm from "htm";
 
+/** @import { h as createElement } from "preact" */
+
 /** @typedef {Record<string, string>} Messages English text → the same in the page's language */
 /**
  * `mark`: of decimals. `tagOf`: the template tag of htm. `answer`: what the server names, as agents.
  * @typedef {{
  *   messages: Messages, mark: string, plurals: Intl.PluralRules, listed: (items: string[]) => string,
- *   tagOf: (h: typeof import("preact").h) => ReturnType<typeof htm.bind<any>>,
+ *   tagOf: (h: typeof createElement) => ReturnType<typeof htm.bind<any>>,
  *   answer: <Answer>(answer: Answer) => Answer,
  * }} Translation
  */
@@ -104,7 +106,7 @@ export function translated(statics, messages) {
 
 /**
  * The template tag of htm for a language.
- * @param {typeof import("preact").h} h
+ * @param {typeof createElement} h
  * @param {Messages} messages
  * @returns {ReturnType<typeof htm.bind<any>>}
  */
