@@ -110,6 +110,8 @@ def as_sentence(message: str) -> str:
 
 _NO_OBJECT = frozenset({"model_type", "model_attributes_type", "dict_type", "dataclass_type"})
 """Types of Pydantic's errors about a body that is no JSON object."""
+_OF_OBJECTS = frozenset({"unknown_field", "says_all"})
+"""Types of errors about an object, rather than about one of its fields."""
 
 
 def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
@@ -129,6 +131,8 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
         elif not any(isinstance(key, str) for key in path) and error["type"] not in _NO_OBJECT:
             # Of a record whose fields say by themselves what is valid, such as `choices`.
             path = [key for key in error["loc"][1:] if isinstance(key, str | int)]
+            if error["type"] in _OF_OBJECTS and not any(isinstance(key, int) for key in path):
+                path = []  # of the body, whose type has a tag
         field = ".".join(str(key) for key in path)
         refusal = refusal_in([error])
         detail = _sentence(field, error, path) if refusal is None else as_sentence(str(refusal))
@@ -138,7 +142,7 @@ def field_errors(errors: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
 
 def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
     names = [key for key in path if isinstance(key, str)]
-    if error["type"] in ("unknown_field", "says_all"):
+    if error["type"] in _OF_OBJECTS:
         where = f"{field}: " if field else ""
         return f"{where}{error['msg']}."
     if error["type"] == "setting":

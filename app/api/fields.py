@@ -3,7 +3,17 @@
 import json
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import MISSING, fields, is_dataclass
-from typing import Annotated, Any, Optional, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    Optional,
+    Self,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from pydantic import (
     AfterValidator,
@@ -14,15 +24,20 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
     Tag,
     TypeAdapter,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
     model_validator,
 )
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import PydanticCustomError, core_schema
+from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
+from pydantic_core.core_schema import ErrorType
 
 from app.api.descriptions import VALID
-from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.settings import DeclaredSetting, declare
 from hexapods.domain.text import (
     MAX_NAME,
@@ -220,36 +235,67 @@ class Body(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _reject_unknown_fields(cls, value: Any) -> Any:
+    def _reject_unknown_fields(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         # Looked up once: a body may have a hundred thousand names, and Pydantic's lookup is slow.
         valid = cls.model_fields
         unknown = [name for name in value if name not in valid] if isinstance(value, dict) else []
-        if unknown:
-            message = _nested_form(cls, {name: value[name] for name in unknown}) or str(
-                UnknownName("field", unknown[0][:MAX_NAME], valid)
-            )
-            # Passed as a value, as a name with braces is no valid template.
-            raise PydanticCustomError("unknown_field", "{message}", {"message": message})
-        return value
+        if not unknown:
+            return handler(value)
+        message = _nested_form(cls, {name: value[name] for name in unknown}) or str(
+            UnknownName("field", unknown[0][:MAX_NAME], valid)
+        )
+        known = {name: value[name] for name in value if name in valid}
+        raise _with_unknown(message, lambda: handler(known))
 
 
-def known_members(record: Any) -> BeforeValidator:
+def known_members(record: Any) -> WrapValidator:
     """Return a validator of members of a body that are records: names the first unknown member.
 
     Pydantic alone would tell of each, of which a body may have a hundred thousand.
     """
     valid = [field.name for field in fields(record)]
 
-    def check(value: Any) -> Any:
+    def check(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
         unknown = [name for name in value if name not in valid] if isinstance(value, dict) else []
-        if unknown:
-            message = str(UnknownName("field", unknown[0][:MAX_NAME], valid))
-            raise PydanticCustomError("unknown_field", "{message}", {"message": message})
-        return value
+        if not unknown:
+            return handler(value)
+        message = str(UnknownName("field", unknown[0][:MAX_NAME], valid))
+        known = {name: value[name] for name in value if name in valid}
+        raise _with_unknown(message, lambda: handler(known))
 
-    return BeforeValidator(check)
+    return WrapValidator(check)
+
+
+def _with_unknown(message: str, validate: Callable[[], Any]) -> Exception:
+    """Return the error of an unknown field, together with those of the fields that there are.
+
+    Args:
+        message: of the error.
+        validate: validates the other fields.
+    """
+    # Passed as a value, as a name with braces is no valid template.
+    error = PydanticCustomError("unknown_field", "{message}", {"message": message})
+    try:
+        validate()
+    except ValidationError as others:
+        errors = [InitErrorDetails(type=error, loc=(), input=None), *map(_again, others.errors())]
+        return ValidationError.from_exception_data(others.title, errors)
+    except HexapodError:  # of the fields together, which are not all there is
+        pass
+    return error
+
+
+def _again(error: ErrorDetails) -> InitErrorDetails:
+    """Return an error as it is given to Pydantic, from how it tells of it."""
+    context = error.get("ctx")
+    kind: PydanticCustomError | str = error["type"]
+    if error["type"] not in get_args(ErrorType):
+        message = {**(context or {}), "message": error["msg"]}
+        kind, context = PydanticCustomError(error["type"], "{message}", message), None
+    again = InitErrorDetails(type=kind, loc=error["loc"], input=None)
+    return again if context is None else {**again, "ctx": context}
 
 
 class SettingsBody(Body):

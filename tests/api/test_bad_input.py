@@ -153,6 +153,24 @@ def test_all_invalid_fields_are_listed(api: Api) -> None:
     assert {error["field"] for error in problem["errors"]} == {"steps", "pace", "settings.alpha"}
 
 
+def test_an_unknown_field_is_told_together_with_the_other_errors(api: Api) -> None:
+    body = {"step": 5, "steps": 0, "gait": "hop", "settings": {"alfa": 1, "alpha": 7}}
+    problem = refused(api.call("POST", "/trainings", json=body), 422, "did you mean steps?")
+    told = {error["field"]: error["detail"] for error in problem["errors"]}
+    assert told.keys() == {"", "steps", "gait", "settings", "settings.alpha"}
+    assert told[""].startswith("unknown field 'step'; choose one of:")
+    assert "did you mean alpha?" in told["settings"]
+    assert "Unknown gait 'hop'" in told["gait"]
+    lanes = [{"agent": "greedy", "plans": 1, "plans_with": "luck"}, {"agnt": "greedy"}]
+    answer = api.call("POST", "/races", json={"lanes": lanes, "steps": 0})
+    fields = {error["field"] for error in refused(answer, 422)["errors"]}
+    assert fields == {"lanes.0", "lanes.0.plans_with", "lanes.1", "lanes.1.agent", "steps"}
+    branch = {"branch_from": {"race_id": 3, "stp": 3}, "more": 1}
+    answer = api.call("POST", "/races", json=branch)
+    fields = {error["field"] for error in refused(answer, 422)["errors"]}
+    assert fields == {"", "branch_from", "branch_from.race_id", "branch_from.step"}
+
+
 def test_running_training_has_no_table(api: Api) -> None:
     run = api.slow_training()
     lanes = [{"agent": "q-learning", "training_id": run["id"]}]
