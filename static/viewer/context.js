@@ -50,12 +50,28 @@
     return { at: camera.position.toArray(), to: target.toArray() };
   };
 
-  const putBack = () => {
+  // The client puts its camera by itself while it makes its scene.
+  const [HELD_MS, LEAST_PICTURES] = [2000, 8];
+  let [isViewers, since, pictures] = [true, null, 0];
+  const putBack = (now) => {
     const { cameraControl } = window.__viserMutable ?? {};
-    if (cameraControl) cameraControl.setLookAt(...before.at, ...before.to, false);
-    else requestAnimationFrame(putBack);
+    if (cameraControl) {
+      since ??= now;
+      pictures += 1;
+      if (isViewers) cameraControl.setLookAt(...before.at, ...before.to, false);
+      if (!isViewers || (now - since > HELD_MS && pictures > LEAST_PICTURES)) return;
+    }
+    requestAnimationFrame(putBack);
   };
-  if (before) addEventListener("hexapods:draw", () => requestAnimationFrame(putBack), { once: true });
+  if (before) {
+    addEventListener("hexapods:show", ({ detail }) => {
+      if (detail.shot) isViewers = false;
+    });
+    for (const type of ["pointerdown", "wheel", "keydown"]) {
+      addEventListener(type, () => (isViewers = false), { capture: true, passive: true });
+    }
+    requestAnimationFrame(putBack);
+  }
 
   // ---- a loss
 
