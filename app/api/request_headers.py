@@ -25,6 +25,7 @@ READ = frozenset(
         "if-none-match",
         "last-event-id",
         "origin",
+        "page-language",
         "referer",
         "sec-fetch-dest",
         "sec-fetch-mode",

@@ -9,12 +9,14 @@ from fastapi import Request
 
 from app.answer import Answer, Count
 from app.api.deps import ServicesDep, StageDep
+from app.api.pages import languages_of
 from app.api.policy import WATCH, api_router, policy
 from app.api.reachable import machine_addresses, reachable_first, url_of, why_unreachable
 from app.api.record_response import RecordResponse
 from app.api.stage_paths import stage_of
 from app.setting_fields import PREFIX
 from app.settings import Settings, is_loopback
+from hexapods.assets import static_dir
 
 _NEEDS_TOKEN = (
     f"There is no address for everyone: watching needs the token ({PREFIX}SPECTATORS=token)."
@@ -83,8 +85,12 @@ class Link(NamedTuple):
 
 
 def link_to(request: Request, settings: Settings, path: str) -> Link:
-    """Return the link to a page; arguments as of `page_address`."""
+    """Return the link to a page, in the language of the page that asks; see `page_address`."""
     address = page_address(request, settings, path)
+    # Of a page that is not in English.
+    language = request.headers.get("page-language", "")
+    if language in languages_of(static_dir()):
+        address += f"?lang={language}"
     is_reachable = address_for_others(request, settings) is not None
     return Link(address, qr_image(address) if is_reachable else None)
 

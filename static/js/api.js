@@ -1,6 +1,6 @@
 // Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
-import { inWords, t } from "./format.js";
+import { inWords, languageHeader, t } from "./format.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Annotations, Curve, Curves, Disturbance } from "./types.js" */
@@ -218,7 +218,7 @@ export async function request(method, path, body, headers = {}) {
   const response = await fetch(new URL(path, base()), {
     method,
     // Forms of other sites cannot send this header, so the server can tell their requests from this page's.
-    headers: { "X-Requested-With": "hexapods", ...type, ...headers },
+    headers: { "X-Requested-With": "hexapods", ...languageHeader, ...type, ...headers },
     body: body === undefined || body instanceof Blob ? body : JSON.stringify(body),
   }).catch(() => {
     throw new Unreachable();

@@ -11,6 +11,14 @@ export const translation = lang && lang !== "en" ? await (await import("./transl
  * @returns {Answer}
  */
 export const inWords = (answer) => translation?.answer(answer) ?? answer;
+/** The name of the run in the picture, with how far it is. @param {string} text */
+export const labelInWords = (text) => translation?.label(text) ?? text;
+/** An address of this server, in the page's language. @param {string} address */
+export const inLanguage = (address) =>
+  (translation ? `${address}${address.includes("?") ? "&" : "?"}lang=${lang}` : address);
+/** Tells the server the page's language, for the links that it makes. */
+/** @type {Record<string, string>} */
+export const languageHeader = translation ? { "Page-Language": lang } : {};
 /** For dates; by default the browser's. */
 const locale = translation ? lang : [];
 

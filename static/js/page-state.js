@@ -322,12 +322,14 @@ export function asTexts({ settings = {}, ...form }) {
 }
 
 /**
- * What the address says of a page of its own, as `/x/NAME?flag`: the last part of its path, and the names in its query.
+ * What the address says of a page of its own, as `/x/NAME?flag&lang=de`: the last part of its path, the names in its
+ * query, and its language.
  */
-export const ownAddress = () => ({
-  name: decodeURIComponent(location.pathname.split("/").at(-1) ?? ""),
-  flags: [...new URLSearchParams(location.search).keys()],
-});
+export function ownAddress() {
+  const query = new URLSearchParams(location.search);
+  const name = decodeURIComponent(location.pathname.split("/").at(-1) ?? "");
+  return { name, flags: [...query.keys()], lang: query.get("lang") ?? "en" };
+}
 
 /** Write a link into the address bar. @param {string} address */
 export const showAddress = (address) => history.replaceState(history.state, "", address);

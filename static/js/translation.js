@@ -6,11 +6,13 @@ import htm from "htm";
 
 /** @typedef {Record<string, string>} Messages English text → the same in the page's language */
 /**
- * `mark`: of decimals. `tagOf`: the template tag of htm. `answer`: what the server names, as agents.
+ * `mark`: of decimals. `tagOf`: the template tag of htm. `answer`: what the server names, as agents. `plates`: words of
+ * the labels in the 3D view, with what is written for them. `label`: of the run in the picture.
  * @typedef {{
  *   messages: Messages, mark: string, plurals: Intl.PluralRules, listed: (items: string[]) => string,
  *   tagOf: (h: typeof createElement) => ReturnType<typeof htm.bind<any>>,
  *   answer: <Answer>(answer: Answer) => Answer,
+ *   plates: [string, string][], label: (text: string) => string,
  * }} Translation
  */
 
@@ -18,10 +20,13 @@ import htm from "htm";
 export async function translationTo(lang) {
   /** @type {Messages} */
   let messages = {};
+  /** @type {[string, string][]} */
+  let plates = [];
   try {
     const answer = await fetch(new URL(`../messages/${lang}.json`, import.meta.url));
-    const { page, server } = await answer.json();
-    messages = { ...server, ...page };
+    const catalogue = await answer.json();
+    messages = { ...catalogue.server, ...catalogue.page };
+    plates = Object.entries(catalogue.plates);
   } catch {
     // In English rather than not at all.
   }
@@ -30,7 +35,8 @@ export async function translationTo(lang) {
   return {
     messages, mark: parts.find(({ type }) => type === "decimal")?.value ?? ".", plurals: new Intl.PluralRules(lang),
     listed: (items) => lists.format(items), tagOf: (h) => tagIn(h, messages),
-    answer: (answer) => named(answer, messages),
+    answer: (answer) => named(answer, messages), plates,
+    label: (text) => text.replace(/, (.*)$/, (all) => written(all, plates)),
   };
 }
 
@@ -124,6 +130,9 @@ export function tagIn(h, messages) {
     return html(entry.template, ...entry.order.map((n) => fields[n]));
   };
 }
+
+/** A text in which words are replaced. @param {string} text @param {[string, string][]} words */
+export const written = (text, words) => words.reduce((now, [word, other]) => now.replace(word, other), text);
 
 // ---- names that the server gives
 

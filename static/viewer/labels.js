@@ -23,6 +23,9 @@
   let highest = 0;
   let lanes = [];
   let names = [];
+  /** Words of labels with what is written for them in the page's language. */
+  let words = [];
+  let mark = ".";
   let labelPx = null;
 
   const layer = document.createElement("div");
@@ -63,9 +66,17 @@
     return called ? text.replace(/^(\d+\. )?.*/, (_, place = "") => `${place}${called}`) : text;
   };
 
+  /** A label in the page's language; of a robot its first line is a name, and stays. */
+  const translated = (label) => {
+    const [first, ...others] = named(label).split("\n");
+    const inWords = (line) => words.reduce((now, [word, other]) => now.replace(word, other), line)
+      .replace(/(\d)\.(\d)/g, `$1${mark}$2`);
+    return [laneOf(label.name) === null ? inWords(first) : first, ...others.map(inWords)].join("\n");
+  };
+
   const write = (label, text) => {
     label.text = text;
-    label.element.replaceChildren(...named(label).split("\n").map((line) => {
+    label.element.replaceChildren(...translated(label).split("\n").map((line) => {
       const element = document.createElement("div");
       element.textContent = line;
       return element;
@@ -137,6 +148,10 @@
     covered = detail.covered ?? covered;
     lanes = detail.lanes ?? lanes;
     labels.forEach(paint);
+    if (String(detail.words ?? []) !== String(words)) {
+      [words, mark] = [detail.words ?? [], detail.mark ?? "."];
+      labels.forEach((label) => write(label, label.text));
+    }
     rename(detail.names ?? names);
     resize(detail.labelPx ?? labelPx);
     window.__viserMutable?.requestRender();

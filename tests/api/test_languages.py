@@ -81,3 +81,17 @@ def test_a_catalogue_translates_no_text_that_the_server_does_not_have(api: Api, 
     named = {key for key in catalogue(code)["server"] if "{" not in key}
 
     assert named - texts == set()
+
+
+@pytest.mark.parametrize(("language", "query"), [("de", "?lang=de"), ("xx", ""), (None, "")])
+def test_a_room_has_the_language_of_the_page_that_shows_it(
+    api: Api, language: str | None, query: str
+) -> None:
+    headers = {} if language is None else {"Page-Language": language}
+    opened = api.call("POST", "/rooms", headers=headers).json()
+    room = api.call("GET", f"/rooms/{opened['code']}", headers=headers).json()
+
+    for answer in (opened, room):
+        assert answer["address"].endswith(f"/r/{room['address'].rsplit('/', 1)[1]}")
+        assert answer["address"].partition("?")[2] == query.removeprefix("?")
+    api.call("POST", f"/rooms/{opened['code']}/end")

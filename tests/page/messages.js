@@ -51,7 +51,7 @@ function keysBelow(node) {
 export const keysOfModule = (path) => [...new Set(keysBelow(
   parse(readFileSync(path, "utf-8"), { ecmaVersion: "latest", sourceType: "module" })))];
 
-/** Catalogue by language. @returns {Record<string, Record<"page" | "server", Record<string, string>>>} */
+/** Catalogue by language. @returns {Record<string, Record<"page" | "server" | "plates", Record<string, string>>>} */
 export const catalogues = () => Object.fromEntries(readdirSync(CATALOGUES).map((name) =>
   [name.replace(".json", ""), JSON.parse(readFileSync(join(CATALOGUES, name), "utf-8"))]));
 

@@ -8,9 +8,9 @@ import { PHONE, WATCH } from "./translated.js";
 const needed = [...WATCH, ...PHONE].flatMap(keysOfModule);
 const all = new Set(modules().flatMap(keysOfModule));
 
-for (const [code, { page, server }] of Object.entries(catalogues())) {
+for (const [code, { page, ...others }] of Object.entries(catalogues())) {
   const kept = Object.entries(page).filter(([key]) => all.has(key));
   const whole = { ...Object.fromEntries(needed.map((key) => [key, ""])), ...Object.fromEntries(kept) };
   const sorted = Object.fromEntries(Object.entries(whole).sort(([a], [b]) => (a < b ? -1 : 1)));
-  writeFileSync(join(CATALOGUES, `${code}.json`), `${JSON.stringify({ page: sorted, server }, null, 1)}\n`);
+  writeFileSync(join(CATALOGUES, `${code}.json`), `${JSON.stringify({ page: sorted, ...others }, null, 1)}\n`);
 }

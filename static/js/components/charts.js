@@ -3,7 +3,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import {
   chartDepth, crosshair, fileNameOf, readIndex, tableOf, thinnedPath, valuesIn, within, zoomBy, zoomOf,
 } from "../chart.js";
-import { metres, sentence, t, whole as wholeNumber } from "../format.js";
+import { decimal, metres, sentence, t, whole as wholeNumber } from "../format.js";
 import { cssColour, LineLabels, MarkLines, placeCaptions, roomFor, widthOf } from "./line-labels.js";
 import { isProjected } from "../page.js";
 import { thinned, ticks } from "../scale.js";
@@ -140,7 +140,7 @@ function frameOf(width, { lines, part: [from, to], values: [least, most] }) {
 /** The numbers of an axis, all with as many decimals. @param {number[]} numbers */
 function tickTexts(numbers) {
   const decimals = Math.max(0, ...numbers.map((number) => (tickText(number).split(".")[1] ?? "").length));
-  return numbers.map((number) => (decimals
+  return numbers.map((number) => decimal(decimals
     ? number.toFixed(decimals).replace("-", number.toFixed(decimals) === `-${(0).toFixed(decimals)}` ? "" : "\u2212")
     : tickText(number)));
 }

@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { isPolling } from "../events.js";
 import { form } from "../form.js";
-import { inMillimetres, t, tenths } from "../format.js";
+import { inMillimetres, t, tenths, translation } from "../format.js";
 import { narrative } from "../headline.js";
 import {
   aim, clickedCell, clickedNode, closeLegs, directions, drawHere, inspection, isFlat, isProjected, isStill, isTaken,
@@ -48,7 +48,8 @@ export function Stage() {
   useEffect(() => {
     const message = {
       type: "hexapods:show", theme: shownTheme.value, lanes: colours.split(" "),
-      covered: covered.value, isProjected: isProjected.value, legsOf: legsOf.value, ...directions.value,
+      covered: covered.value, isProjected: isProjected.value, legsOf: legsOf.value,
+      words: translation?.plates, mark: translation?.mark, ...directions.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
   }, [shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value, directions.value]);

@@ -4,7 +4,7 @@ import { addressOf } from "../../../js/page-state.js";
 import {
   chosenLesson, isBusy, isReachable, lessonInWords, lessons, opened, openRoom, problem, roomIsOpen, rooms,
 } from "../lessons/list.js";
-import { codeInGroups, shortAddress } from "../../../js/format.js";
+import { codeInGroups, inLanguage, shortAddress } from "../../../js/format.js";
 import { Dialog, html } from "../../../js/components/elements.js";
 import { PupilsWindow, Sharing } from "./sharing.js";
 
@@ -80,8 +80,8 @@ const Opened = ({ room }) => html`
     <p>It is on this computer alone: phones cannot come to it.</p>
     <${PupilsWindow} address=${room.address} />
   `}
-  <a class="primary button-link" href=${`r/${room.code}`}>Teach: open the cockpit</a>
-  <a class="secondary button-link" href=${`r/${room.code}?projector`} target="_blank">Open the projector</a>
+  <a class="primary button-link" href=${inLanguage(`r/${room.code}`)}>Teach: open the cockpit</a>
+  <a class="secondary button-link" href=${inLanguage(`r/${room.code}?projector`)} target="_blank">Open the projector</a>
 `;
 
 /** @param {{ title: string, found: ListedRoom[] }} props */
@@ -91,7 +91,7 @@ const Rooms = ({ title, found }) => found.length > 0 && html`
     <ul class="open-rooms">
       ${found.map(({ code, title: lesson, participants }) => html`
         <li key=${code}>
-          <a href=${`r/${code}`}><b>${codeInGroups(code)}</b> ${lesson}</a>
+          <a href=${inLanguage(`r/${code}`)}><b>${codeInGroups(code)}</b> ${lesson}</a>
           <span class="dim">${participants} in it</span>
         </li>
       `)}

@@ -2,6 +2,8 @@
 import { copy } from "../../../js/page.js";
 import { html } from "../../../js/components/elements.js";
 
+/** The address of a room, as pupils open it. @param {string} address */
+const withFlag = (address) => `${address}${address.includes("?") ? "&" : "?"}join`;
 const PROXY = "HEXAPODS_PUBLIC_URL=https://hexapods.example";
 /** What makes the server reachable for phones: for whom, and what to type. */
 const WAYS = [
@@ -28,8 +30,8 @@ export const Sharing = () => html`
 export const PupilsWindow = ({ address }) => html`
   <div class="sharing">
     <p class="dim">To see it as a pupil does, open this in a private window:</p>
-    <p class="command"><code>${`${address}?join`}</code>
+    <p class="command"><code>${withFlag(address)}</code>
       <button class="quiet compact" aria-label="Copy the link for a private window"
-        onClick=${() => copy(`${address}?join`, "Link copied.")}>Copy</button></p>
+        onClick=${() => copy(withFlag(address), "Link copied.")}>Copy</button></p>
   </div>
 `;

@@ -6,7 +6,7 @@ import { Loaded, Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { resultsFile } from "../api.js";
 import { PupilsWindow, Sharing } from "../components/sharing.js";
-import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
+import { codeInGroups, count, inLanguage, metres, shortAddress } from "../../../js/format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../../../js/page.js";
 import { runs, stage } from "../../../js/store.js";
 import { Away, Failure } from "./join.js";
@@ -189,7 +189,7 @@ function Dots() {
 /** @param {{ classroom: Classroom }} props */
 const Ways = ({ classroom }) => html`
   <footer class="ways">
-    <a class="secondary as-button" href=${`${classroom.code}?projector`} target="_blank">
+    <a class="secondary as-button" href=${inLanguage(`${classroom.code}?projector`)} target="_blank">
       <${Icon} name="present" />Projector
     </a>
     <a class="secondary as-button" href=${resultsFile(classroom.code)} download="">

@@ -3,9 +3,10 @@ import { useState } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
 import { isPolling } from "../../../js/events.js";
 import { isAway } from "../../../js/store.js";
-import { codeInGroups, t } from "../../../js/format.js";
+import { codeInGroups, inLanguage, listed, t } from "../../../js/format.js";
+import { LANGUAGES } from "../../../js/page-state.js";
 import { waits } from "./busy-server.js";
-import { busy, code as typedCode, failures, isRemoved, join, refusal, room } from "./room.js";
+import { busy, code as typedCode, failures, isRemoved, join, missingLanguage, refusal, room } from "./room.js";
 
 /** Why something failed, or what it waits for, beside its button. @param {{ at: string }} props */
 export const Failure = ({ at }) => html`
@@ -21,6 +22,13 @@ const Wait = ({ words, left_s }) => html`
   </p>
 `;
 
+/** Told where the address names a language that there is not. */
+export const NoLanguage = () => missingLanguage && html`
+  <p class="strip-note" role="status">There is no language “${missingLanguage}” here. There are ${languages}.</p>
+`;
+
+const languages = listed(Object.entries(LANGUAGES).map(([code, name]) => `${name} (${code})`));
+
 export const Waiting = () => html`
   <main class="door">
     ${waits.value.room ? html`<div role="status"><${Wait} ...${waits.value.room} /></div>`
@@ -35,13 +43,17 @@ export function Closed() {
   return html`
     <main class="door">
       <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
-      <h1>${typedCode.length > 16 ? t("No room of this code") : t("No room {code}", { code: typedCode })}</h1>
+      <${NoLanguage} />
+      <h1>
+        ${typedCode.length > 16 ? t("No room of this code") : t("No room {code}", { code: typedCode })}
+      </h1>
       <p role="alert">${refusal}</p>
       <label for="other-code">Code on the projector</label>
       <input id="other-code" class="code-field" type="text" maxlength="16" autocomplete="off"
         autocapitalize="characters" spellcheck=${false} value=${typed}
         onInput=${(/** @type {any} */ { target }) => setTyped(target.value)} />
-      <a class="primary as-button" href=${other || undefined} aria-disabled=${other ? undefined : "true"}>
+      <a class="primary as-button" href=${other ? inLanguage(other) : undefined}
+        aria-disabled=${other ? undefined : "true"}>
         Go to the room
       </a>
     </main>
@@ -62,6 +74,7 @@ export function Door() {
   return html`
     <main class="door">
       <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
+      <${NoLanguage} />
       <h1>${title}</h1>
       ${isRemoved.value && html`
         <p class="strip-note warn" role="alert">

@@ -7,7 +7,7 @@ import { Loaded, Slot, withStyle } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";
-import { Away, Door, Failure } from "./join.js";
+import { Away, Door, Failure, NoLanguage } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { Answer, KINDS, scoreInWords } from "./questions.js";
 import {
@@ -26,6 +26,7 @@ export function Phone() {
       <p><b>${me.name}</b><span class="dim">seed ${me.seed}</span></p>
       <p class="dim code">${codeInGroups(classroom.code)}</p>
     </header>
+    <${NoLanguage} />
     <${Away} words="Your name and your seed are kept." />
     ${classroom.state === "frozen" && html`
       <p class="strip-note" role="status">The teacher has stopped the class for a moment. Look to the front.</p>

@@ -1,7 +1,7 @@
 // The 3D view of a room's page: a replay of the own run, or the room's stage with the run in the spotlight.
 import { computed, effect, signal, untracked } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { t } from "../../../js/format.js";
+import { t, translation } from "../../../js/format.js";
 import { noteWatched } from "../api.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { Loaded, loadPlan } from "../../../js/features.js";
@@ -91,7 +91,8 @@ export function Picture({ isProjected = false }) {
   useEffect(() => {
     const show = () => frame.current?.contentWindow?.postMessage({
       type: "hexapods:show", theme: shownTheme.value, isProjected, lanes: lanes.split(" "), names: names.split("\n"),
-      ...(isProjected ? { labelPx: LABEL_EM * emPx() } : {}), ...directions.value,
+      ...(isProjected ? { labelPx: LABEL_EM * emPx() } : {}), words: translation?.plates, mark: translation?.mark,
+      ...directions.value,
     }, globalThis.origin);
     show();
     addEventListener("resize", show);

@@ -1,11 +1,11 @@
 // The room of this page as signals: what the server tells who asks, kept by its events, and what can be done in it.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { t } from "../../../js/format.js";
+import { inLanguage, t } from "../../../js/format.js";
 import { getAnyRun, getOptions, randomKey, roomAddressOf } from "../../../js/api.js";
 import * as api from "../api.js";
 import { whenAdmitted } from "./busy-server.js";
 import { storedText } from "../../../js/page.js";
-import { ownAddress } from "../../../js/page-state.js";
+import { LANGUAGES, ownAddress } from "../../../js/page-state.js";
 import { makeRequests } from "../../../js/requests.js";
 import { debounce } from "../../../js/debounce.js";
 import { openEvents } from "../../../js/events.js";
@@ -19,9 +19,12 @@ import { applyEvent, connection, eventNames, options, runs, setEntry } from "../
  * The code of the address, as it was typed; whether the page is for the projector, of a pupil in any case, or the frame
  * of a robot beside another one.
  */
-const { name: typed, flags } = ownAddress();
+const { name: typed, flags, lang } = ownAddress();
 export const code = typed;
 export const [isProjector, isPupils, isBeside] = ["projector", "join", "beside"].map((flag) => flags.includes(flag));
+
+/** A language of the address that the page does not have; empty without one. */
+export const missingLanguage = lang in LANGUAGES ? "" : lang;
 
 /** Null until the server has answered. @type {Signal<Classroom | null>} */
 export const room = signal(null);
@@ -88,7 +91,7 @@ export const CLOSER = { why: t("Why each move"), gait: t("Its gait"), table: t("
 
 /** A link to the dashboard with the own run, in the room's stage. @param {string} tab */
 export const closerLink = (tab) =>
-  `${room.value?.code}/?run=${ownRunId.value ?? lastRunId.value}&depth=study&tab=${tab}&hidden=card`;
+  inLanguage(`${room.value?.code}/?run=${ownRunId.value ?? lastRunId.value}&depth=study&tab=${tab}&hidden=card`);
 
 const ENDED = ["finished", "failed", "stopped", "interrupted"];
 

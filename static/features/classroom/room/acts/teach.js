@@ -2,7 +2,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { getTable } from "../../api.js";
 import { html } from "../../../../js/components/elements.js";
-import { count, metres } from "../../../../js/format.js";
+import { count, inLanguage, metres } from "../../../../js/format.js";
 import { playback, position } from "../../../../js/player.js";
 import { playhead } from "../../../../js/store.js";
 import { rivalTeacher } from "../lane-names.js";
@@ -70,7 +70,7 @@ function Outcome({ now: { presses, taught, rival }, by }) {
 /** The other robot, at the same moment of its practice. @param {{ run_id: string | null, by: string }} props */
 function RivalRobot({ run_id, by }) {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
-  const [address] = useState(() => `${room.peek()?.code}?beside`);
+  const [address] = useState(() => inLanguage(`${room.peek()?.code}?beside`));
   useEffect(() => {
     if (run_id === null) return undefined;
     const tell = () => frame.current?.contentWindow?.postMessage({
