@@ -6,8 +6,8 @@ import htm from "htm";
 
 /** @typedef {Record<string, string>} Messages English text → the same in the page's language */
 /**
- * `mark`: of decimals. `tagOf`: the template tag of htm. `answer`: what the server names, as agents. `plates`: words of
- * the labels in the 3D view, with what is written for them. `label`: of the run in the picture.
+ * `mark`: of decimals. `tagOf`: the template tag of htm. `answer`: what the server names, as agents. `plates`: patterns
+ * of words of the labels in the 3D view, with what is written for them. `label`: of the run in the picture.
  * @typedef {{
  *   messages: Messages, mark: string, plurals: Intl.PluralRules, listed: (items: string[]) => string,
  *   tagOf: (h: typeof createElement) => ReturnType<typeof htm.bind<any>>,
@@ -26,7 +26,7 @@ export async function translationTo(lang) {
     const answer = await fetch(new URL(`../messages/${lang}.json`, import.meta.url));
     const catalogue = await answer.json();
     messages = { ...catalogue.server, ...catalogue.page };
-    plates = Object.entries(catalogue.plates);
+    plates = patternsOf(catalogue.plates);
   } catch {
     // In English rather than not at all.
   }
@@ -36,7 +36,7 @@ export async function translationTo(lang) {
     messages, mark: parts.find(({ type }) => type === "decimal")?.value ?? ".", plurals: new Intl.PluralRules(lang),
     listed: (items) => lists.format(items), tagOf: (h) => tagIn(h, messages),
     answer: (answer) => named(answer, messages), plates,
-    label: (text) => text.replace(/, (.*)$/, (all) => written(all, plates)),
+    label: (text) => labelIn(text, messages, plates),
   };
 }
 
@@ -131,8 +131,22 @@ export function tagIn(h, messages) {
   };
 }
 
-/** A text in which words are replaced. @param {string} text @param {[string, string][]} words */
-export const written = (text, words) => words.reduce((now, [word, other]) => now.replace(word, other), text);
+/**
+ * Words as patterns of whole words, each with what is written for it.
+ * @param {Messages} words
+ * @returns {[string, string][]}
+ */
+export const patternsOf = (words) => Object.entries(words)
+  .map(([word, other]) => [`(?<![\\p{L}-])${word}(?![\\p{L}-])`, other]);
+
+/**
+ * The label of the picture in another language: what follows a run's name, which stays.
+ * @param {string} text
+ * @param {Messages} messages
+ * @param {[string, string][]} patterns
+ */
+export const labelIn = (text, messages, patterns) => messages[text] ?? text.replace(/, [^,]*$/, (end) =>
+  patterns.reduce((now, [pattern, other]) => now.replace(new RegExp(pattern, "u"), other), end));
 
 // ---- names that the server gives
 

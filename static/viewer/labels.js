@@ -23,7 +23,7 @@
   let highest = 0;
   let lanes = [];
   let names = [];
-  /** Words of labels with what is written for them in the page's language. */
+  /** Patterns of words of labels with what is written for them in the page's language. */
   let words = [];
   let mark = ".";
   let labelPx = null;
@@ -69,7 +69,7 @@
   /** A label in the page's language; of a robot its first line is a name, and stays. */
   const translated = (label) => {
     const [first, ...others] = named(label).split("\n");
-    const inWords = (line) => words.reduce((now, [word, other]) => now.replace(word, other), line)
+    const inWords = (line) => words.reduce((now, [word, other]) => now.replace(new RegExp(word, "u"), other), line)
       .replace(/(\d)\.(\d)/g, `$1${mark}$2`);
     return [laneOf(label.name) === null ? inWords(first) : first, ...others.map(inWords)].join("\n");
   };

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { LANGUAGES } from "../../static/js/page-state.js";
 import { t } from "../../static/js/format.js";
-import { keysIn, named, translated } from "../../static/js/translation.js";
+import { keysIn, labelIn, named, patternsOf, translated } from "../../static/js/translation.js";
 import { catalogues, keysOfModule, modules, placeholdersOf } from "./messages.js";
 import { PHONE, WATCH } from "./translated.js";
 
@@ -66,4 +66,13 @@ test("of an answer the titles are translated, and what people typed stays", () =
   assert.deepEqual(named(answer, { Ice: "Eis" }), {
     name: "Ice", worlds: [{ ...world, title: "Eis", description: "Eis" }],
   });
+});
+
+test("the label of the picture has its words in another language, and a run's name as it is", () => {
+  const words = patternsOf({ "at step": "bei Schritt", "step": "Schritt", "of": "von" });
+  const messages = { "On the start line": "An der Startlinie" };
+  const label = (/** @type {string} */ text) => labelIn(text, messages, words);
+  assert.equal(label("On the start line"), "An der Startlinie");
+  assert.equal(label("Race: Greedy, Two-step, step 18 of 20"), "Race: Greedy, Two-step, Schritt 18 von 20");
+  assert.equal(label("Two of a step, Two-step at step 3 of 20"), "Two of a step, Two-step bei Schritt 3 von 20");
 });
