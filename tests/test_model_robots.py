@@ -90,7 +90,7 @@ def test_they_are_recorded_analysed_drawn_and_exported(name: str) -> None:
     servos = (Servo(label, 0, number, 1500, 100) for number, label in enumerate(labels))
     walk = servo_walk(RecordedWalks.of_race(config, [lane]), ServoMap("own", tuple(servos)))
     assert walk.pulses_us.shape[1] == joints
-    assert 'id="segment-0"' in hx.view(race).page
+    assert 'id="segment-paper-0"' in hx.view(race).page
 
 
 def test_a_mesh_stands_for_its_link_and_the_torso_has_the_agents_colour() -> None:

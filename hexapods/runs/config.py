@@ -256,11 +256,11 @@ TRAINING_FIELDS = frozenset(field.name for field in fields(TrainingConfig))
 
 _RESERVED = """
 a agents as_json b beats_greedy beats_greedy_total best_known_m best_known_relative blocks
-checkpoint disturb elapsed_s execution experiment failed finished from gaits greedy_m h half_side_m
-help high high_m iqm_m is_deterministic json key low low_m mean_m n observations of_best_known out
-points_m probability published reaches_greedy relative relative_finished resume retry robots role
-scheduler seed_numbers seeds table tls_ca tls_cert tls_key total trials verdict walk walkers workers
-worlds
+checkpoint data disturb elapsed_s execution experiment failed finished from gaits greedy_m h
+half_side_m help high high_m iqm_m is_deterministic json keep keeping key low low_m mean_m n name
+observations of_best_known out points_m probability published reaches_greedy relative
+relative_finished resume retry robots role scheduler seed_numbers seeds table tls_ca tls_cert
+tls_key total trials verdict walk walkers workers worlds
 """
 RESERVED = frozenset(_RESERVED.split())
 """Names that mean something else beside the settings on the command line or in summaries."""
