@@ -7,7 +7,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { root } from "./api.js";
 import { html } from "./components/elements.js";
-import { inWords } from "./format.js";
+import { inWords, t } from "./format.js";
 import { declareFields, declareWords, page } from "./page-state.js";
 import { addHandlers, connection, setEntry } from "./store.js";
 
@@ -109,7 +109,7 @@ export function actionOfKey(key) {
 
 /** The keys of features that the help lists: [key, what it does]. */
 export const helpOfKeys = () => features.value.flatMap(({ keys = {} }) =>
-  Object.entries(keys).flatMap(([key, { does }]) => (does ? [[key.toUpperCase(), does]] : [])));
+  Object.entries(keys).flatMap(([key, { does }]) => (does ? [[key.toUpperCase(), t(does)]] : [])));
 
 /**
  * The named parts of one kind of all features, each with the name of its feature.

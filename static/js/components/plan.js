@@ -1,6 +1,6 @@
 // The robots from above, drawn by the messages that the 3D view would have drawn, where that cannot be had.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { metres, t } from "../format.js";
+import { fixed, metres, t } from "../format.js";
 import { drawHere } from "../page.js";
 import { bodiesOf, FINISH_M, LabelTexts, laneWidth, pathOf, placeOf, ticksOf, viewOf } from "../plan.js";
 import { drawIn } from "../player.js";
@@ -120,7 +120,7 @@ function Ground({ bodies, titles, view }) {
       ])}Z`} />
     `)}
     ${ticksOf(view).map(({ y, hasNumber }) => html`
-      <path class="tick" d=${line(y)} />${hasNumber && mark(y, y.toFixed(1).replace("-", "−"))}
+      <path class="tick" d=${line(y)} />${hasNumber && mark(y, fixed(y, 1).replace("-", "−"))}
     `)}
     <path class="start" d=${line(0)} /><path class="finish" d=${line(FINISH_M)} />
     ${mark(0, t("start"))}${mark(FINISH_M, t("finish"))}
