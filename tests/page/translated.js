@@ -14,7 +14,8 @@ export const WATCH = [
     .map((name) => `static/js/components/${name}.js`),
   "static/features/classroom/feature.js", "static/features/classroom/first-lesson.js",
   ...["explanation", "loss", "navigator", "why"].map((name) => `static/features/explanations/components/${name}.js`),
-  "static/features/explanations/steps.js",
+  "static/features/explanations/steps.js", "static/features/guide/reading.js",
+  "static/features/run_code/citation.js",
 ];
 
 export const PHONE = [

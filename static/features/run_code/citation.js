@@ -1,6 +1,7 @@
 // How to cite the run on stage, in the help.
 import { useState } from "preact/hooks";
 import { html } from "../../js/components/elements.js";
+import { t } from "../../js/format.js";
 import { shownRun } from "../../js/on-stage.js";
 import { linkTo } from "../../js/page-state.js";
 import { copy } from "../../js/page.js";
@@ -19,7 +20,7 @@ export function Citation() {
     try {
       const { command } = await getCode(run.id);
       const words = citationOf(run, command);
-      setText((await copy(words, "Citation copied.")) ? `Copied: ${words}` : words);
+      setText((await copy(words, t("Citation copied."))) ? t("Copied: {words}", { words }) : words);
     } catch (error) {
       setText(messageOf(/** @type {Error} */ (error)));
     }
