@@ -41,7 +41,7 @@ def import_map(entry: str) -> str:
         path = waiting.pop()
         if path in sources:
             continue
-        text = (assets.static_dir() / path).read_text("utf-8")
+        text = _sent_text(path)
 
         def renamed(match: re.Match[str], path: str = path) -> str:
             imported = _path_of(match["name"], path, packages)
@@ -58,8 +58,12 @@ def import_map(entry: str) -> str:
 
 def styles(*names: str) -> str:
     """Return style sheets below `static`, one after the other, without comments."""
-    files = (assets.static_dir() / name for name in names)
-    return "\n".join(assets.without_comments(file.read_bytes()).decode() for file in files)
+    return "\n".join(map(_sent_text, names))
+
+
+def _sent_text(path: str) -> str:
+    file = assets.static_dir() / path
+    return assets.as_sent(file, file.read_bytes()).decode()
 
 
 def data_block(name: str, data: Mapping[str, Any] | bytes) -> str:

@@ -26,7 +26,7 @@ from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, R
 from app.api.problem_pages import prefers_html
 from app.api.problems import problem
 from app.storage.errors import NotFound
-from hexapods.assets import without_comments
+from hexapods.assets import as_sent
 
 _INLINE_SCRIPT = re.compile(
     r"<script(?![^>]*\ssrc=|[^>]*application/json)[^>]*>(.*?)</script>", re.DOTALL
@@ -339,9 +339,7 @@ class _Files(StaticFiles):
         if cached is None or cached[0] != version:
             media_type = mimetypes.guess_type(path)[0] or "text/plain"
             policy = _POLICY_OF_PARTS if media_type in _PARTS else {}
-            content = Path(path).read_bytes()
-            if media_type == "text/css":
-                content = without_comments(content)
+            content = as_sent(Path(path), Path(path).read_bytes())
             cached = (version, CompressedContent(content, media_type, policy))
             self._contents[file] = cached
         return cached[1].response(scope)

@@ -144,7 +144,7 @@ def test_a_key_in_the_picture_does_one_thing(dashboard: Dashboard, shared_server
     with shared_server.api() as api:
         race = finished(api, "races", RACE)
     dashboard.open(shared_server.link(run=race["id"], t="2"))
-    view = picture_of(page)
+    view = picture_of(page, robots=2)
     at_rest(view, page)
     place = "() => __viserMutable.camera.position.toArray()"
     directed = pytest.approx(view.evaluate(place), abs=0.02)

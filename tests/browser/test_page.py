@@ -84,7 +84,7 @@ def test_the_menu_is_in_groups_and_moved_through_by_keys(
     menu = page.get_by_role("menu")
     expect(menu.get_by_role("menuitem", name="Copy a link to this")).to_be_focused()
     titles = menu.get_by_role("group").evaluate_all("all => all.map((group) => group.ariaLabel)")
-    assert titles == ["Share", "With a class", "This page", "Help"]
+    assert titles == ["Share", "With a class", "This page", "Language", "Help"]
     page.keyboard.press("ArrowUp")
     expect(menu.get_by_role("menuitem", name="Keys and help")).to_be_focused()
     page.keyboard.press("Home")

@@ -255,12 +255,12 @@ def test_no_robot_is_cut_while_the_race_runs(
     assert cut == []
 
 
-def picture_of(page: Page) -> Frame:
-    """Return the frame of the 3D view, once robots and their labels are in it."""
+def picture_of(page: Page, robots: int = 3) -> Frame:
+    """Return the frame of the 3D view, once so many robots and their labels are in it."""
     view = page.frame(url=re.compile("/viewer/"))
     assert view is not None
     labels = view.locator(".labels > div:not([hidden])")
-    wait_until(lambda: labels.count() >= 3)
+    wait_until(lambda: labels.count() >= robots)
     return view
 
 
