@@ -163,12 +163,17 @@ const loadMenu = () => import("./menu.js").then(({ Menu }) => Menu);
 
 /** What is seldom wanted: loaded when it is first opened. */
 function More() {
-  const [isOpen, setOpen] = useState(false);
+  // How often it was opened, or 0: it is drawn anew each time, also if it is closed and opened at once, of which
+  // browsers tell by one event.
+  const [opening, setOpening] = useState(0);
+  const onToggle = (/** @type {Toggled} */ { target }) => setOpening((number) => (target.open ? number + 1 : 0));
   return html`
-    <details class="menu more-menu" onToggle=${(/** @type {Toggled} */ { target }) => setOpen(target.open)}>
+    <details class="menu more-menu" onToggle=${onToggle}>
       <summary class="quiet square" aria-label="More" aria-haspopup="menu" title="More">⋯</summary>
-      ${isOpen && html`
-        <div class="menu-body"><${Loaded} name="menu" load=${loadMenu} views=${headerViews.value} /></div>
+      ${opening > 0 && html`
+        <div class="menu-body" key=${opening}>
+          <${Loaded} name="menu" load=${loadMenu} views=${headerViews.value} />
+        </div>
       `}
     </details>
   `;
