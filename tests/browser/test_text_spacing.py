@@ -81,7 +81,7 @@ def test_board_tabs_and_time_are_whole(dashboard: Dashboard, server: Serving) ->
             for tab in ("board", "train") if depth != "watch" else ("board",):
                 page.goto(server.link(depth=depth, tab=tab))
                 expect(dashboard.headline).to_have_text(re.compile("wins"))
-                expect(page.locator(".body")).not_to_be_empty()
+                expect(page.locator("#panel-body")).not_to_be_empty()
                 problems[f"{depth} {tab} {size['width']}"] = cut_off(page)
     assert {where: what for where, what in problems.items() if what} == {}
 
