@@ -102,6 +102,9 @@ def test_all_of_watch_is_in_the_language_of_the_link(
         race = finished(api, "races", RACE)
         for moment, time_s in (("Explain this step", 5.0), ("wins", 60.0)):
             hold(api, race, time_s)
+            # Before it the stage had the practice that the race needed.
+            shown_run = page.get_by_role("group", name=full_width("Shown run"), exact=True)
+            expect(shown_run).to_contain_text("Race: ")
             expect(page.get_by_text(full_width(moment)).first).to_be_visible()
             texts[moment] = untranslated(page)
         page.keyboard.press("?")

@@ -9,6 +9,7 @@ from tests.browser.dashboard import Dashboard
 from tests.browser.rooms import PHONE, RoomPage
 from tests.browser.serving import Serving, finished, hold
 from tests.conftest import new_page
+from tests.running_app import wait_until
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -76,8 +77,13 @@ def test_after_a_lost_context_the_robots_are_back_where_they_were(
     dashboard.open(server.address)
     view: Frame = page.frames[1]
     view.wait_for_function(CAMERA)
-    view.evaluate(TAKE_CAMERA)
-    expect(page.get_by_role("button", name="Directed camera")).to_be_visible()
+    directed = page.get_by_role("button", name="Directed camera")
+
+    def has_taken() -> bool:
+        view.evaluate(TAKE_CAMERA)
+        return directed.is_visible()
+
+    wait_until(has_taken)  # the view has robots before it hears of keys
     view.wait_for_function(f"() => ({CAMERA})().join() === '100,200,300'")
     stage = page.get_by_role("region", name="Stage")
 
