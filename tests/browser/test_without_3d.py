@@ -21,10 +21,13 @@ LOSE_CONTEXT = """() => {
     const context = document.querySelector("canvas[data-engine]")?.getContext("webgl2");
     if (window.hasLost || !context?.getExtension("WEBGL_lose_context")) return false;
     window.hasLost = true;
-    context.getExtension("WEBGL_lose_context").loseContext();
+    setTimeout(() => context.getExtension("WEBGL_lose_context").loseContext(), 500);
     return true;
 }"""
-"""Loses the context of the 3D view, if it has one, once in each of its pages."""
+"""Loses the context of the 3D view, if it has one, once in each of its pages.
+
+Half a second later: the page loads anew then, and would be asked again if it had not answered.
+"""
 TAKE_CAMERA = """() => {
     window.dispatchEvent(new KeyboardEvent("keydown", {key: "+", code: "BracketRight"}));
     __viserMutable.cameraControl.setLookAt(1, 2, 3, 0, 0.5, 0, false);
