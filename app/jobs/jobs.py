@@ -191,17 +191,23 @@ class Jobs:
             run = self._store.get(run_id)
             if run.state in RESUMABLE:
                 runs = resumed_runs(run, self._store)
-                for queued in runs:
-                    self._check_needed_by_none(queued)
-                return self._enqueue(runs, resumed=True)
-            try:
-                resumed = self._resume_paused(run)
-            except Conflict as conflict:
-                if conflict.state not in RESUMABLE:
-                    raise
-                resumed = None
-        # The process may die between the check and the change: then the run is queued again.
-        return resumed or self.resume(run_id)
+                ending = [queued.id for queued in runs if self._supervisor.find(queued.id)]
+                if not ending:
+                    for queued in runs:
+                        self._check_needed_by_none(queued)
+                    return self._enqueue(runs, resumed=True)
+            else:
+                try:
+                    return self._resume_paused(run)
+                except Conflict as conflict:
+                    if conflict.state not in RESUMABLE:
+                        raise
+                # The process died between the check and the change: the run is queued again.
+                ending = [run_id]
+        # The end of a training would otherwise end the race that is queued again behind it.
+        for training_id in ending:
+            self._await_process(training_id)
+        return self.resume(run_id)
 
     def _resume_paused(self, run: Run) -> Run:
         choices = " or ".join(sorted(PAUSED | RESUMABLE))

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
@@ -9,8 +10,10 @@ from dataclasses import replace
 import pytest
 
 from app.events.bus import EventBus
+from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
+from app.jobs.worker_process import Exit
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
@@ -156,6 +159,36 @@ def test_race_whose_training_was_stopped_goes_on_with_it(
     assert (resumed.state, resumed.waiting_for) == ("queued", (practice_id,))
     wait_until(lambda: store.get(practice_id).state == "running")
     jobs.stop(race.id)
+    wait_until_ended(store, store.get(practice_id))
+
+
+def test_race_is_not_queued_behind_a_training_that_is_still_ending(
+    store: RunStore, open_jobs: Callable[[], Jobs], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The end of the training is settled after it is stored: it must not end the new race."""
+    jobs = open_jobs()
+    lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
+    race = jobs.start(RaceStart(WALK, lanes, steps=5, seed=0))
+    (practice_id,) = race.waiting_for
+    wait_for_progress(store, store.get(practice_id))
+    may_settle = threading.Event()
+    process_ended = Job.process_ended
+
+    def store_end_and_wait(job: Job, end: Exit) -> None:
+        process_ended(job, end)
+        may_settle.wait(30.0)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Job, "process_ended", store_end_and_wait)
+        patch.setattr("app.jobs.jobs._EXIT_S", 0.1)
+        jobs.stop(race.id)
+        assert wait_until_ended(store, store.get(practice_id)).state == "stopped"
+        with pytest.raises(Conflict, match=f"training {practice_id} is still ending"):
+            jobs.resume(race.id)
+    may_settle.set()
+    assert jobs.resume(race.id).waiting_for == (practice_id,)
+    wait_until(lambda: store.get(practice_id).state == "running")
+    assert jobs.stop(race.id).state == "stopped"
     wait_until_ended(store, store.get(practice_id))
 
 
