@@ -37,7 +37,7 @@ from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError, c
 from pydantic_core.core_schema import ErrorType
 
 from app.api.descriptions import VALID
-from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.settings import DeclaredSetting, declare
 from hexapods.domain.text import (
     MAX_NAME,
@@ -62,6 +62,16 @@ def _checked_by(check: Callable[[Any], Any]) -> AfterValidator:
             return check(value)
         except InvalidInput as error:
             raise ValueError(str(error)) from error
+
+    return AfterValidator(validate)
+
+
+def taken_by(check: Callable[[Any], object]) -> AfterValidator:
+    """Return a validator of values that a function of the domain takes, with its error."""
+
+    def validate(value: Any) -> Any:
+        check(value)
+        return value
 
     return AfterValidator(validate)
 
@@ -247,7 +257,7 @@ class Body(BaseModel):
             UnknownName("field", unknown[0][:MAX_NAME], valid)
         )
         known = {name: value[name] for name in value if name in valid}
-        raise _with_unknown(message, lambda: handler(known))
+        raise _all_errors(_unknown_field(message), lambda: handler(known))
 
 
 def known_members(record: Any) -> WrapValidator:
@@ -263,28 +273,34 @@ def known_members(record: Any) -> WrapValidator:
             return handler(value)
         message = str(UnknownName("field", unknown[0][:MAX_NAME], valid))
         known = {name: value[name] for name in value if name in valid}
-        raise _with_unknown(message, lambda: handler(known))
+        raise _all_errors(_unknown_field(message), lambda: handler(known))
 
     return WrapValidator(check)
 
 
-def _with_unknown(message: str, validate: Callable[[], Any]) -> Exception:
-    """Return the error of an unknown field, together with those of the fields that there are.
-
-    Args:
-        message: of the error.
-        validate: validates the other fields.
-    """
+def _unknown_field(message: str) -> InitErrorDetails:
     # Passed as a value, as a name with braces is no valid template.
     error = PydanticCustomError("unknown_field", "{message}", {"message": message})
+    return InitErrorDetails(type=error, loc=(), input=None)
+
+
+def _all_errors(
+    error: InitErrorDetails, validate: Callable[[], Any], without: str | None = None
+) -> ValidationError:
+    """Return an error of an object together with those of its other fields.
+
+    Args:
+        error: the error.
+        validate: validates the other fields.
+        without: name of a field whose errors are left out, with those of its members.
+    """
+    title, errors = "", [error]
     try:
         validate()
     except ValidationError as others:
-        errors = [InitErrorDetails(type=error, loc=(), input=None), *map(_again, others.errors())]
-        return ValidationError.from_exception_data(others.title, errors)
-    except HexapodError:  # of the fields together, which are not all there is
-        pass
-    return error
+        title = others.title
+        errors += [_again(other) for other in others.errors() if without not in other["loc"]]
+    return ValidationError.from_exception_data(title, errors)
 
 
 def _again(error: ErrorDetails) -> InitErrorDetails:
@@ -326,25 +342,34 @@ def one_of(models: Mapping[str, type[Any]], tag_of: Callable[[Any], str]) -> Any
 
 
 def named_in(
-    models: Mapping[str, type[Any]], field: str, noun: str, default: str | None = None
+    models: Mapping[str, type[BaseModel]], field: str, noun: str, default: str | None = None
 ) -> Any:
     """Return the type of a body of one of several models, which a field of text names.
 
     Args:
-        models: body model by value of the field; another value raises `UnknownName`.
+        models: body model by value of the field; another value is an `UnknownName`, which is
+            answered with the errors of the other fields but `settings`.
         field: name of the field.
         noun: what it names, for the error.
         default: value of a body without the field; by default the first.
     """
+    most_fields = max(models, key=lambda name: len(models[name].model_fields))
 
     def tag_of(value: Any) -> str:
-        is_object = isinstance(value, dict)
-        tag = value.get(field) if is_object else getattr(value, field, None)
-        if not isinstance(tag, str):
-            # This model rejects a body that is no object or lacks a required field.
-            return default or next(iter(models))
-        if tag not in models:
-            raise UnknownName(noun, tag[:MAX_NAME], models)
-        return tag
+        tag = value.get(field) if isinstance(value, dict) else getattr(value, field, None)
+        # The default's model rejects a body that is no object, or whose field is no text.
+        return tag if isinstance(tag, str) else default or next(iter(models))
 
-    return one_of(models, tag_of)
+    def check_name(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+        name = value.get(field) if isinstance(value, dict) else None
+        if not isinstance(name, str) or name in models:
+            return handler(value)
+        unknown = UnknownName(noun, name[:MAX_NAME], models)
+        error = InitErrorDetails(
+            type="value_error", loc=(field,), input=None, ctx={"error": unknown}
+        )
+        # What settings there are depends on the name; the other fields are those of most models.
+        others = {**value, field: most_fields}
+        raise _all_errors(error, lambda: handler(others), without="settings")
+
+    return Annotated[one_of(models, tag_of), WrapValidator(check_name)]

@@ -99,15 +99,15 @@ async def hexapod_error(request: Request, error: Exception) -> Response:
 
 async def _validation_error(request: Request, error: Exception) -> Response:
     raw = error.errors() if isinstance(error, RequestValidationError) else []
-    refusal = refusal_in(raw)
+    refusal, errors = refusal_in(raw), field_errors(raw)
     if refusal is not None and len(raw) == 1:
+        refusal.field = refusal.field or errors[0]["field"]
         return await hexapod_error(request, refusal)
-    errors = field_errors(raw)
-    detail = " ".join(entry["detail"] for entry in errors[:3])
+    details = [entry["detail"] for entry in errors]
     # `errors` is of fields that are wrong by themselves, which none of several refusals says.
     if all(refusal_in([entry]) is not None for entry in raw):
-        return problem(422, detail)
-    return problem(422, detail, errors)
+        return problem(422, " ".join(details))
+    return problem(422, " ".join(details[:3]), errors)
 
 
 async def _http_error(request: Request, error: Exception) -> Response:

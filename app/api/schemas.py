@@ -19,13 +19,14 @@ from app.api.fields import (
     given_settings,
     known_members,
     number,
+    taken_by,
 )
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
 from app.storage.run import ANNOTATIONS
 from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
-from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, world_from
+from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, named_world, world_from
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import MAX_STEPS, TrainingConfig, WalkingProblem, training_config
 from hexapods.runs.lane import LANE_FIELDS
@@ -37,6 +38,7 @@ WorldName = Annotated[
     str,
     WithJsonSchema({"type": "string", "enum": list(WORLDS)}),
     Field(description=VALID["world"]),
+    taken_by(named_world),
 ]
 
 

@@ -168,10 +168,14 @@ class Unreachable extends RequestError {
   }
 }
 
-/** @param {FieldError} error */
+/**
+ * The name of an error's field; of an item of a list, the name of the list.
+ * @param {FieldError} error
+ */
 const fieldOf = (error) => {
   const path = error.field ?? error.loc ?? error.pointer ?? "";
-  return String(Array.isArray(path) ? path.at(-1) : path.split(/[./]/).at(-1));
+  const names = (Array.isArray(path) ? path : path.split(/[./]/)).map(String);
+  return names.findLast((name) => !/^\d+$/.test(name)) ?? "";
 };
 
 /**

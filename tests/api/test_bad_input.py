@@ -171,6 +171,44 @@ def test_an_unknown_field_is_told_together_with_the_other_errors(api: Api) -> No
     assert fields == {"", "branch_from", "branch_from.race_id", "branch_from.step"}
 
 
+@needs("experiments", "tournaments", "what_if")
+def test_an_unknown_name_is_told_together_with_the_other_errors(api: Api) -> None:
+    lane = {"agent": "greedyy", "plans_with": "luck", "settings": {"deep": 1}}
+    rules = {"gait": "hop", "worlds": ["moon"], "steps": 0}
+    body: dict[str, Any]
+    for path, body, wrong in (
+        ("/races", {"lanes": [{"agent": "greedyy"}], "steps": -1}, {"lanes.0.agent", "steps"}),
+        ("/races", {"lanes": [lane]}, {"lanes.0.agent", "lanes.0.plans_with"}),
+        ("/races", {"world": "moon", "steps": -1}, {"world", "steps"}),
+        ("/trainings", {"agent": "sarsaa", "step": 1, "seed": -1}, {"agent", "", "seed"}),
+        ("/trainings/estimate", {"agent": "sarsaa", "steps": 0}, {"agent", "steps"}),
+        ("/what-if", {"agent": "sarsaa", "steps": 0}, {"agent", "steps"}),
+        (
+            "/experiments",
+            {"experiment": "sweep", "agents": ["sarsaa"], "worlds": "moon", "seeds": 0},
+            {"agents.0", "worlds.0", "seeds"},
+        ),
+        ("/tournaments", {"rules": rules}, {"rules.gait", "rules.worlds.0", "rules.steps"}),
+    ):
+        problem = refused(api.call("POST", path, json=body), 422)
+        assert {error["field"] for error in problem["errors"]} == wrong, (path, body)
+    several = {"lanes": [{"agent": "greedyy"}, {"agent": "lookahead"}], "gait": "hop"}
+    detail = refused(api.call("POST", "/races", json=several), 422)["detail"]
+    assert "'greedyy'" in detail
+    assert "did you mean look-ahead?" in detail
+
+
+def test_a_single_unknown_name_is_told_with_its_field(api: Api) -> None:
+    for path, body, field in (
+        ("/races", {"lanes": [{"agent": "greedy"}, {"agent": "greedyy"}]}, "lanes.1.agent"),
+        ("/trainings", {"agent": "sarsaa", "settings": {"trace_decay": 0.5}}, "agent"),
+        ("/trainings", {"world": "moon"}, "world"),
+    ):
+        problem = refused(api.call("POST", path, json=body), 422, "choose one of")
+        assert problem["field"] == field
+        assert "errors" not in problem
+
+
 def test_running_training_has_no_table(api: Api) -> None:
     run = api.slow_training()
     lanes = [{"agent": "q-learning", "training_id": run["id"]}]

@@ -11,10 +11,10 @@ beforeEach(() => (options.value = OPTIONS));
 test("a problem document becomes a message and the fields that it is about", () => {
   const refused = refusal(422, {
     title: "Invalid", detail: "alpha must be above 0",
-    errors: [{ field: "alpha" }, { loc: ["body", "steps"] }, { pointer: "/lanes/0/agent" }],
+    errors: [{ field: "alpha" }, { loc: ["body", "steps"] }, { pointer: "/lanes/0/agent" }, { field: "gaits.0" }],
   });
   assert.deepEqual([refused.message, refused.status, refused.fields],
-    ["alpha must be above 0", 422, ["alpha", "steps", "agent"]]);
+    ["alpha must be above 0", 422, ["alpha", "steps", "agent", "gaits"]]);
   assert.equal(refusal(502, {}).message, "The server answered 502.");
 });
 

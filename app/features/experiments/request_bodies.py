@@ -17,11 +17,14 @@ from app.api.fields import (
     SettingsBody,
     given_settings,
     record_fields,
+    taken_by,
 )
 from app.features.experiments.start import ExperimentStart
 from hexapods.domain.errors import UnknownName
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.observation import OBSERVATIONS
+from hexapods.domain.text import MAX_NAME
+from hexapods.domain.world import lasting_world
 from hexapods.experiments.config import (
     MAX_SEEDS,
     MAX_WORKERS,
@@ -75,7 +78,7 @@ class ExperimentBody(Body):
         """Convert to the request of the service.
 
         Raises:
-            InvalidInput: if the values are not valid together, or an agent is not registered.
+            InvalidInput: if the values are not valid together.
         """
         by_field: dict[str, Any] = {
             field.name: getattr(self, field.name)
@@ -83,9 +86,6 @@ class ExperimentBody(Body):
             if field.name in type(self).model_fields
             and field.name not in ("experiment", "settings")
         } | given_settings(self.settings)
-        for agent in by_field["agents"] or ():
-            if agent not in self.registered:
-                raise UnknownName("agent", agent, self.registered)
         values = {name: tuple(v) if isinstance(v, list) else v for name, v in by_field.items()}
         config = experiment_config(self.experiment, values)
         return ExperimentStart(config, self.name or None, self.workers)
@@ -110,6 +110,14 @@ def experiment_body(agents: tuple[str, ...]) -> type[ExperimentBody]:
     )
     preset_name: Any = Literal[tuple(PRESETS)]
     own_fields["experiment"] = (Annotated[preset_name, Field(description=VALID["experiment"])], ...)
+
+    def check_agent(name: str) -> None:
+        if name not in agents:
+            raise UnknownName("agent", name[:MAX_NAME], agents)
+
+    for field, check in (("agents", check_agent), ("worlds", lasting_world)):
+        names: Any = OneOrMore[Annotated[str, taken_by(check)]]  # type: ignore[misc]
+        own_fields[field] = (Annotated[names, Field(description=VALID[field])], None)
     name = "ExperimentBody"
     model = create_model(
         name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own_fields

@@ -16,6 +16,7 @@ from app.api.fields import (
     given_settings,
     named_in,
     record_fields,
+    taken_by,
 )
 from app.features.tournaments.tournament import DEFAULT_ENTRIES_PER_HOUR, EntriesPerHour
 from hexapods.domain.errors import InvalidInput
@@ -23,6 +24,7 @@ from hexapods.domain.observation import Observation
 from hexapods.domain.robot import AnyRobot
 from hexapods.domain.settings import DeclaredSetting, SettingValues, declare, declared_fields
 from hexapods.domain.text import NAMES
+from hexapods.domain.world import lasting_world
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.rules import MAX_ROBOTS, MAX_WORLDS, TournamentRules
@@ -53,7 +55,7 @@ class RulesBody(Body):
     """Rules of a tournament; the other fields of `TournamentRules` are added to it."""
 
     worlds: Annotated[
-        list[Annotated[str, Field(max_length=_MAX_WORLD)]],
+        list[Annotated[str, Field(max_length=_MAX_WORLD), taken_by(lasting_world)]],
         Field(min_length=1, max_length=MAX_WORLDS, description=VALID["worlds"]),
     ] = Field(default_factory=lambda: list(TournamentRules.worlds))
     robots: Annotated[list[AnyRobot], Field(max_length=MAX_ROBOTS, description=VALID["robots"])] = (

@@ -172,7 +172,7 @@ def test_what_is_entered_again_is_the_same_entry(school: Contest) -> None:
 @pytest.mark.parametrize(
     ("body", "status", "field", "words"),
     [
-        ({"agent": "nobody"}, 422, "", "nknown agent 'nobody'; choose one of"),
+        ({"agent": "nobody"}, 422, "agent", "nknown agent 'nobody'; choose one of"),
         ({}, 422, "agent", "agent is missing"),
         ({"agent": "q-learning", "settings": {"alpha": 7}}, 422, "settings.alpha", "must be"),
         ({"agent": "q-learning", "settings": {"x": 7}}, 422, "settings", "x"),
@@ -181,7 +181,7 @@ def test_what_is_entered_again_is_the_same_entry(school: Contest) -> None:
         ({"agent": "q-learning", "steps": "many"}, 422, "steps", "whole number"),
         ({"agent": "greedy", "steps": 5}, 422, "steps", "practises no steps"),
         ({"agent": "greedy", "robot": "ant"}, 422, "robot", "nt is no robot of this tournament"),
-        ({"agent": "greedy", "robot": {"x": 1}}, 422, "", "robot field"),
+        ({"agent": "greedy", "robot": {"x": 1}}, 422, "robot", "robot field"),
         ({"agent": "greedy", "observation": "seen"}, 422, "observation", "observation must be"),
         ({"agent": "greedy", "name": "me"}, 403, "", "by their name in the room"),
         (
@@ -211,13 +211,13 @@ def test_entries_that_the_rules_do_not_allow_are_refused(
 @pytest.mark.parametrize(
     ("body", "field", "words"),
     [
-        ({"rules": {"gait": "moonwalk"}}, "", "left-right-origin"),
+        ({"rules": {"gait": "moonwalk"}}, "rules.gait", "left-right-origin"),
         ({"rules": {"draws": 2}}, "rules.draws", "draws must be"),
         ({"rules": {"steps": 6000}}, "rules.steps", "steps must be a whole number from 1 to 5,000"),
         ({"rules": {"transitions": 100_001}}, "rules.transitions", "from 500 to 100,000"),
         ({"rules": {"transitions": "many"}}, "rules.transitions", "whole number"),
         ({"rules": {"transitions": 500}}, "rules.transitions", "at least 600 here"),
-        ({"rules": {"worlds": ["nowhere"]}}, "rules.worlds", "nowhere"),
+        ({"rules": {"worlds": ["nowhere"]}}, "rules.worlds.0", "nowhere"),
         ({"rules": {"worlds": []}}, "rules.worlds", "worlds"),
         ({"rules": {"worlds": ["flat", "flat"]}}, "rules.worlds", "is there twice"),
         ({"rules": {"disturbances": []}}, "rules", "disturbances"),
@@ -241,6 +241,13 @@ def test_rules_that_are_none_are_refused(
     problem = refused(answer, 404 if "room" in body else 422)
     assert words.lower() in problem["detail"].lower()
     assert fields_of(problem) == ([field] if field else [])
+
+
+def test_an_unknown_agent_is_told_together_with_the_other_errors(school: Contest) -> None:
+    code = school.room()
+    pupil, tournament = school.joined(code), school.open(code)
+    problem = refused(enter(pupil, tournament, agent="nobody", steps=0, observation="x"), 422)
+    assert sorted(fields_of(problem)) == ["agent", "observation", "steps"]
 
 
 def test_how_much_a_search_may_simulate_is_a_rule(school: Contest) -> None:
