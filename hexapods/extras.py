@@ -8,7 +8,9 @@ A module of an extra is imported under `needs`, and nowhere else, which a test c
 
 import importlib.util
 import os
+import shutil
 import sys
+import sysconfig
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -69,7 +71,7 @@ def install_command(*extras: str) -> str:
         raise InvalidInput(f"there is no extra {unknown[0]!r}; the extras are {', '.join(MODULES)}")
     package = f'"racing-hexapods[{",".join(extras)}]"'
     if importlib.util.find_spec("pip") is not None:
-        return f"pip install {package}"
+        return f"{_pip()} install {package}"
     # An environment of uv, which has no pip.
     prefix = Path(sys.prefix)
     if (prefix / "uv-receipt.toml").is_file():
@@ -77,6 +79,21 @@ def install_command(*extras: str) -> str:
     if any((folder / "CACHEDIR.TAG").is_file() for folder in prefix.parents):
         return f"uvx --from {package} racing-hexapods"
     return f"uv pip install {package}"
+
+
+def _pip() -> str:
+    """Return the command of this environment's pip.
+
+    It has its folder where the shell would find another pip, or none, and the environment is below
+    the working directory: as in a checkout after `make run`. Else it has none: errors are shown to
+    whoever asks a server, and must not name its folders.
+    """
+    scripts = Path(sysconfig.get_path("scripts"))
+    command = shutil.which("pip")
+    is_found = command is not None and Path(command).parent.resolve() == scripts.resolve()
+    if is_found or not scripts.is_relative_to(Path.cwd()):
+        return "pip"
+    return str(scripts.relative_to(Path.cwd()) / "pip")
 
 
 def is_installed(extra: str) -> bool:

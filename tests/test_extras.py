@@ -126,9 +126,25 @@ def test_a_missing_module_is_reported_in_one_line_with_the_command_that_installs
     assert "\n" not in str(raised.value)
 
 
-def test_in_an_environment_with_pip_the_command_is_of_pip(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_an_environment_with_pip_the_command_is_of_its_pip(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scripts = tmp_path / "checkout" / ".venv" / "bin"
+    scripts.mkdir(parents=True)
+    (scripts / "pip").touch(0o755)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: ModuleSpec(name, None))
-    assert install_command("gym", "mcap") == 'pip install "racing-hexapods[gym,mcap]"'
+    monkeypatch.setattr("sysconfig.get_path", lambda name: str(scripts))
+    command = 'pip install "racing-hexapods[gym,mcap]"'
+
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.chdir(tmp_path / "checkout")
+    assert install_command("gym", "mcap") == f".venv/bin/{command}"
+    # No folder of a server is shown to whoever asks it.
+    monkeypatch.setattr("sysconfig.get_path", lambda name: "/opt/hexapods/bin")
+    assert install_command("gym", "mcap") == command
+    monkeypatch.setattr("sysconfig.get_path", lambda name: str(scripts))
+    monkeypatch.setenv("PATH", str(scripts))
+    assert install_command("gym", "mcap") == command
 
 
 @pytest.mark.parametrize(
