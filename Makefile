@@ -27,7 +27,11 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-com
 # uv takes a fifth of pip's time, but reads none of pip's configuration: where that names an index of
 # one's own, or none, pip installs. Where uv fails, pip tries, and says what is wrong.
 install = ! $(BIN)/python -m pip config list | grep -Eq '\.(index-url|no-index)=' && \
-	$(BIN)/uv pip install --quiet --python $(BIN)/python $(1) 2>/dev/null || $(PIP) $(1)
+	$(BIN)/uv pip install --quiet --python $(BIN)/python $(1) 2>/dev/null || $(PIP) $(1) || $(not_installed)
+# pip says of an index that cannot be reached that it has no version.
+not_installed = { echo "Not installed. Where the index of packages cannot be reached, name another one by" \
+	"PIP_INDEX_URL=https://…, or a folder of wheels by PIP_NO_INDEX=1 PIP_FIND_LINKS=FOLDER:" \
+	"docs/installation.md, Without a network" >&2; exit 1; }
 # One version of each package for every platform and Python, with the hashes of all its files,
 # and not a word on where they came from.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 \
@@ -240,7 +244,7 @@ $(RUN_STAMP): requirements.lock pyproject.toml .ci/find-python
 	fi
 	@echo "Installing what the app needs into $(VENV)"
 	@sed -n '/^uv==/,/[^\\]$$/p' requirements-dev.lock > $(VENV)/uv.lock
-	@$(PIP) --require-hashes --requirement $(VENV)/uv.lock
+	@$(PIP) --require-hashes --requirement $(VENV)/uv.lock || $(not_installed)
 	@$(call install,--require-hashes --requirement requirements.lock)
 	@$(call install,--no-deps --no-build-isolation --editable .)
 	@touch $@
@@ -256,7 +260,7 @@ $(DEV_STAMP): requirements-dev.lock $(RUN_STAMP)
 $(DQN_STAMP): requirements-dqn.lock $(DEV_STAMP)
 	@echo "Installing what the example of a deep network needs into $(VENV)"
 	@$(call install,--no-deps --require-hashes --requirement requirements-dqn.lock)
-	@$(PIP) $(TORCH)
+	@$(PIP) $(TORCH) || $(not_installed)
 	@touch $@
 
 # Packages run no scripts when they are installed: none of these needs one.
