@@ -22,9 +22,7 @@ from hexapods.runs.clocks import Clock
 def add_to(verbs: App) -> None:
     """Add the verbs."""
     for name, export in EXPORTS.items():
-        verbs.command(
-            with_options(_verb(export)), name=name, help=f"Export {export.title} of a run."
-        )
+        verbs.command(with_options(_verb(export)), name=name, help=f"Write {export.title}.")
 
 
 def _verb(export: ExportFormat) -> Callable[..., int]:
