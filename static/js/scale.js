@@ -1,4 +1,4 @@
-// Maps numbers to positions on an axis and to colours, picks round ticks, thins points and lays them apart.
+// Maps numbers to positions on an axis and to colours, picks round ticks, thins points and lays them and labels apart.
 
 /**
  * The position of a value between `low` and `high`, from 0 to 1.
@@ -44,6 +44,28 @@ export const largest = (values, least = 0) =>
 export function thinned(list, most) {
   if (list.length <= most) return list;
   return Array.from({ length: most }, (_, n) => list[Math.round((n * (list.length - 1)) / (most - 1))]);
+}
+
+/**
+ * The labels of an axis that fit beside those before them in the list, each centred on its value as far as both ends of
+ * the axis let it.
+ * @template {{ at: number, size: number }} Label `at`: its value; `size`: its width [px]
+ * @param {Label[]} labels the most important first
+ * @param {number} high value at the end of the axis, which begins at 0
+ * @param {number} width of the axis [px]
+ * @param {number} gap between two labels [px]
+ * @returns {(Label & { left: number })[]} with the left edge of each [px]
+ */
+export function fittingLabels(labels, high, width, gap) {
+  /** @type {(Label & { left: number })[]} */
+  const placed = [];
+  for (const label of labels) {
+    const left = Math.min(Math.max(0, shareOf(label.at, 0, high) * width - label.size / 2), width - label.size);
+    const isBeside = (/** @type {Label & { left: number }} */ other) =>
+      left + label.size + gap <= other.left || other.left + other.size + gap <= left;
+    if (left >= 0 && placed.every(isBeside)) placed.push({ ...label, left });
+  }
+  return placed;
 }
 
 const BINS = 64;

@@ -1,7 +1,9 @@
 // Positions on an axis, ticks, thinning, and points that make room for each other.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { largest, percent, shareOf, swarm, thinned, ticks, valueColours } from "../../static/js/scale.js";
+import {
+  fittingLabels, largest, percent, shareOf, swarm, thinned, ticks, valueColours,
+} from "../../static/js/scale.js";
 
 test("positions stay on the axis, also where it has no length", () => {
   assert.deepEqual([-1, 0, 1, 3, 9].map((value) => shareOf(value, 0, 4)), [0, 0, 0.25, 0.75, 1]);
@@ -54,4 +56,15 @@ const linear = (channel) => (channel <= 10 ? channel / 255 / 12.92 : ((channel /
 test("ticks of a part of an axis are round too", () => {
   assert.deepEqual(ticks(55, 4, 27), [30, 40, 50]);
   assert.deepEqual(ticks(0.2, 4, -0.2).map((tick) => Number(tick.toFixed(2))), [-0.2, -0.1, 0, 0.1, 0.2]);
+});
+
+test("labels of an axis stay between its ends, and give way to those before them in the list", () => {
+  const label = (/** @type {number} */ at, size = 40) => ({ at, size });
+  const fitting = (/** @type {ReturnType<typeof label>[]} */ labels, width = 200) =>
+    fittingLabels(labels, 100, width, 6).map(({ at, left }) => [at, left]);
+  assert.deepEqual(fitting([label(100), label(0), label(50)]), [[100, 160], [0, 0], [50, 80]]);
+  // The last label is wide, and so is the one before it.
+  assert.deepEqual(fitting([label(100, 90), label(50), label(0)]), [[100, 110], [0, 0]]);
+  assert.deepEqual(fitting([label(30), label(29), label(60)]), [[30, 40], [60, 100]]);
+  assert.deepEqual(fitting([label(0)], 20), []);
 });

@@ -7,7 +7,7 @@ import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { isPhone, isProjected } from "../page.js";
 import { closeReplay, isOwn, openReplay, playback, position, replayProblem, stepReplay } from "../player.js";
-import { percent, shareOf, ticks } from "../scale.js";
+import { fittingLabels, percent, shareOf, ticks } from "../scale.js";
 import { scene } from "../store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, toggleTime,
@@ -89,6 +89,8 @@ const StepButtons = () => html`
 
 const SMALL_PX = 12;
 const LABEL_GAP_PX = 6;
+/** As workspace.css has it on both sides of the moment in the picture. */
+const BUBBLE_PADDING_PX = 8;
 
 /** The width of a text of the bar, whose type is larger where the page is projected. @param {string} text */
 const textWidth = (text, weight = 600) =>
@@ -133,7 +135,7 @@ function Track({ known }) {
         <${Marks} place=${place} />
       </div>
       ${isAtLeast("study") && laneRows.value.map((row) => html`<${LaneRow} key=${row.name} row=${row} end=${end} />`)}
-      <${Below} known=${known} width=${width} place=${place} />
+      <${Below} known=${known} width=${width} />
     </div>
   `;
 }
@@ -148,18 +150,8 @@ function labelsAbove(known, width) {
   const first = isComputing && computed < end
     ? [{ kind: "computed", at: computed, text: t("computed {at}", { at: positionInWords(known, computed) }) }] : [];
   const named = marks.value.filter(({ isMinor }) => !isMinor).toSorted((a, b) => weightOf(a) - weightOf(b));
-  /** @type {{ kind: string, at: number, text: string, left: number, right: number }[]} */
-  const placed = [];
-  for (const mark of [...first, ...named]) {
-    const size = textWidth(mark.text);
-    const left = Math.min(Math.max(0, shareOf(mark.at, 0, end) * width - size / 2), width - size);
-    const right = left + size;
-    if (left < 0 || placed.some((other) => left < other.right + LABEL_GAP_PX && right > other.left - LABEL_GAP_PX)) {
-      continue;
-    }
-    placed.push({ ...mark, left, right });
-  }
-  return placed;
+  const labels = [...first, ...named].map((mark) => ({ ...mark, size: textWidth(mark.text) }));
+  return fittingLabels(labels, end, width, LABEL_GAP_PX);
 }
 
 /** @param {Mark} mark */
@@ -198,25 +190,22 @@ const MIN_TICK_GAP_PX = 90;
 
 /**
  * The scale, and on it the moment in the picture.
- * @param {{ known: Scale, width: number, place: (at: number) => string }} props
+ * @param {{ known: Scale, width: number }} props
  */
-function Below({ known, width, place }) {
-  const { unit, end, picture } = known;
+function Below({ known: { unit, end, picture }, width }) {
   const wanted = Math.max(2, Math.min(6, Math.floor(width / MIN_TICK_GAP_PX)));
+  const shown = unit === "s" ? `${fixed(picture, 1)}\u00a0s` : t("step {step}", { step: picture });
   const last = unit === "s" ? `${decimal(Number(end.toFixed(1)))}\u00a0s` : count(end, "step");
-  const room = textWidth(last, 400) + 2 * SMALL_PX;
-  const inner = ticks(end, wanted).filter((at) => (1 - at / end) * width > room);
-  const bubble = unit === "s" ? `${fixed(picture, 1)}\u00a0s` : t("step {step}", { step: picture });
-  const half = textWidth(bubble) / 2 + SMALL_PX;
-  const at = Math.min(Math.max(shareOf(picture, 0, end) * width, half), Math.max(half, width - half));
-  const isFree = (/** @type {number} */ x) => Math.abs(x - at) > half + SMALL_PX;
+  const scaleLabels = [
+    { kind: "last", at: end, text: last },
+    ...ticks(end, wanted).map((tick) => ({ kind: "tick", at: tick, text: unit === "s" ? decimal(tick) : whole(tick) })),
+  ].map((label) => ({ ...label, size: textWidth(label.text, 400) }));
+  const moment = { kind: "picture", at: picture, text: shown, size: textWidth(shown) + 2 * BUBBLE_PADDING_PX };
   return html`
     <div class="below-rail" aria-hidden="true">
-      ${inner.map((tick) => isFree(shareOf(tick, 0, end) * width) && html`
-        <span style=${{ left: place(tick) }}>${unit === "s" ? decimal(tick) : whole(tick)}</span>
+      ${fittingLabels([moment, ...scaleLabels], end, width, SMALL_PX).map(({ kind, at, text, left }) => html`
+        <span key=${kind === "picture" ? kind : at} class=${kind} style=${{ left: `${left}px` }}>${text}</span>
       `)}
-      ${at + half < width - textWidth(last, 400) && html`<span class="last">${last}</span>`}
-      <b style=${{ left: `${at}px` }}>${bubble}</b>
     </div>
   `;
 }
