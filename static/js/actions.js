@@ -112,19 +112,23 @@ const practiseMore = () => {
   return steps === null ? t("Practise more") : t("Practise {steps} more", { steps });
 };
 
-/** The action of the primary button. @type {Signal<Action>} */
+/**
+ * The action of the primary button; `short` is its label where there is little room.
+ * @type {Signal<Action & { short: string }>}
+ */
 export const primaryAction = computed(() => {
-  if (!hasLearner.value) return { label: t("Race"), run: () => startRace() };
+  if (!hasLearner.value) return { label: t("Race"), short: t("Race"), run: () => startRace() };
+  const short = t("Train, then race");
   const tables = laneTables.value;
   if (isRaceRun.value && tables) {
     return {
-      label: t("{practice}, race again", { practice: practiseMore() }),
+      label: t("{practice}, race again", { practice: practiseMore() }), short,
       run: () => startRace({ continued: tables }),
     };
   }
   const steps = validSteps();
-  const label = steps === null ? t("Train, then race") : t("Train {steps} {steps|step|steps}, then race", { steps });
-  return { label, run: () => startRace() };
+  const label = steps === null ? short : t("Train {steps} {steps|step|steps}, then race", { steps });
+  return { label, short, run: () => startRace() };
 });
 
 /** The other ways to start. @type {Signal<Action[]>} */

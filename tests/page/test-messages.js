@@ -68,6 +68,18 @@ test("of an answer the titles are translated, and what people typed stays", () =
   });
 });
 
+test("a catalogue has the words of the labels in the 3D view", () => {
+  const lines = ["after 10 000 steps", "0.10 m, step 16", "thinking 142/156", "crossed at 19.9 s", "on the spot"];
+  for (const [code, { plates }] of Object.entries(catalogues())) {
+    for (const line of lines) {
+      const inWords = patternsOf(plates)
+        .reduce((text, [pattern, other]) => text.replace(new RegExp(pattern, "u"), other), line);
+      assert.doesNotMatch(inWords, /after|step|thinking|crossed|spot/, code);
+      assert.deepEqual(inWords.match(/\d+/g), line.match(/\d+/g), code);
+    }
+  }
+});
+
 test("the label of the picture has its words in another language, and a run's name as it is", () => {
   const words = patternsOf({ "at step": "bei Schritt", "step": "Schritt", "of": "von" });
   const messages = { "On the start line": "An der Startlinie" };

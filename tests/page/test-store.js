@@ -189,6 +189,8 @@ test("a table matches the form by gait, robot, grid, observation and simulator",
 test("the button names no number of steps while the field has a text that is none", () => {
   const label = () => primaryAction.value.label;
   assert.equal(label(), "Train 500 steps, then race");
+  // A phone has room for what it does, and not for how long.
+  assert.equal(primaryAction.value.short, "Train, then race");
   enter("steps", "abc");
   assert.equal(label(), "Train, then race");
   const training = makeRun({});

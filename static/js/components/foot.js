@@ -96,13 +96,13 @@ const isHeldBack = () => !isAtWork() && Object.keys(mistakes.value).length > 0;
 /** The button that starts what comes next, in short where there is little room. @param {{ isShort?: boolean }} props */
 function PrimaryButton({ isShort = false }) {
   const isBusy = isAtWork();
-  const label = isBusy ? busyLabel() : primaryAction.value.label;
+  const { label, short } = isBusy ? { label: busyLabel(), short: busyLabel() } : primaryAction.value;
   const isDisabled = isBusy || !canStart.value;
   return html`
-    <button class=${`primary ${isShort ? "short" : ""}`} aria-disabled=${isDisabled ? "true" : undefined}
-      aria-label=${isShort ? label : undefined} onClick=${runPrimaryAction}
+    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} title=${isShort ? label : undefined}
+      onClick=${runPrimaryAction}
       aria-describedby=${isAway.value ? "held-away" : isHeldBack() ? "held-start" : undefined}>
-      ${!isBusy && html`<${Icon} name="play" />`}${isShort ? label.split(" ")[0] : label}
+      ${!isBusy && html`<${Icon} name="play" />`}${isShort ? short : label}
     </button>
   `;
 }
