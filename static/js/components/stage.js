@@ -237,6 +237,9 @@ function StageLabels() {
   useEffect(() => followCovered(/** @type {HTMLElement} */ (labels.current?.parentElement)), []);
   return html`
     <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
+      ${isPolling.value && html`
+        <p class="chip held-back" role="status">This network holds live updates back: asking every 2 s</p>
+      `}
       <${SceneChips} />
       ${values && hasReadableGrid() && html`
         <p class="chip legend" aria-label=${gridColours(values.low, values.high)}>
@@ -289,6 +292,5 @@ const SceneChips = () => html`
     ${narrative.value.chips.map(({ kind, words }) => (kind === "strong"
       ? html`<p key="run" class="chip strong" role="group" aria-label="Shown run">${words}</p>`
       : html`<p class=${`chip ${kind}`} title=${CHIP_TITLES[kind]}>${words}</p>`))}
-    ${isPolling.value && html`<p class="chip" role="status">This network holds live updates back: asking every 2 s</p>`}
   </div>
 `;

@@ -89,6 +89,7 @@ const StepButtons = () => html`
 
 const SMALL_PX = 12;
 const LABEL_GAP_PX = 6;
+const TICK_GAP_PX = 20;
 /** As workspace.css has it on both sides of the moment in the picture. */
 const BUBBLE_PADDING_PX = 8;
 
@@ -203,7 +204,7 @@ function Below({ known: { unit, end, picture }, width }) {
   const moment = { kind: "picture", at: picture, text: shown, size: textWidth(shown) + 2 * BUBBLE_PADDING_PX };
   return html`
     <div class="below-rail" aria-hidden="true">
-      ${fittingLabels([moment, ...scaleLabels], end, width, SMALL_PX).map(({ kind, at, text, left }) => html`
+      ${fittingLabels([moment, ...scaleLabels], end, width, TICK_GAP_PX).map(({ kind, at, text, left }) => html`
         <span key=${kind === "picture" ? kind : at} class=${kind} style=${{ left: `${left}px` }}>${text}</span>
       `)}
     </div>
