@@ -35,6 +35,7 @@ def test_the_player_and_its_imports_are_those_of_the_page() -> None:
     assert set(modules) == {f"js/offline/{name}" for name in own} | {
         "js/replay-frames.js",
         "js/format.js",
+        "js/server-sentences.js",
         "js/translation.js",
         "vendor/htm.js",
     }

@@ -140,6 +140,7 @@ def _translated(page: str, code: str) -> str:
     static = f"{entry[1]}static"
     links = (
         f'<link rel="modulepreload" href="{static}/js/translation.js">\n'
+        f'<link rel="modulepreload" href="{static}/js/server-sentences.js">\n'
         f'<link rel="preload" href="{static}/messages/{code}.json" as="fetch" crossorigin>\n'
     )
     page = page.replace(_HTML, f'<html lang="{code}"', 1)

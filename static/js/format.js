@@ -1,8 +1,11 @@
 // Texts, numbers, times and lists for people, in the language that the page's HTML says.
 
+/** @import { Translation } from "./translation.js" */
+
 const { lang = "" } = document.documentElement;
-/** Of the page's language; null in English, which is what the code has. */
-export const translation = lang && lang !== "en" ? await (await import("./translation.js")).translationTo(lang) : null;
+/** Of the page's language; null in English, which is what the code has. @type {Translation | null} */
+export const translation = lang && lang !== "en"
+  ? await (await import("./translation.js")).translationTo(lang, t) : null;
 
 /**
  * What the server names, as agents and worlds, in the page's language.
@@ -11,6 +14,10 @@ export const translation = lang && lang !== "en" ? await (await import("./transl
  * @returns {Answer}
  */
 export const inWords = (answer) => translation?.answer(answer) ?? answer;
+/** A sentence of the server, in the page's language. @param {string} text */
+export const said = (text) => translation?.said(text) ?? text;
+/** The name of a run: what a person has typed stays. @param {{ name: string, is_named: boolean }} run */
+export const nameOf = ({ name, is_named }) => (is_named ? name : translation?.name(name) ?? name);
 /** The name of the run in the picture, with how far it is. @param {string} text */
 export const labelInWords = (text) => translation?.label(text) ?? text;
 /** An address of this server, in the page's language. @param {string} address */
@@ -28,12 +35,14 @@ const locale = translation ? lang : [];
  * @param {string} text in English
  * @param {Record<string, string | number>} [values]
  */
-export const t = (text, values = {}) => (translation?.messages[text] ?? text).replace(
-  /\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (_, name, first, second) => {
-    const value = values[name];
-    if (second === undefined) return typeof value === "number" ? whole(value) : value;
-    return (translation ? translation.plurals.select(Number(value)) === "one" : value === 1) ? first : second;
-  });
+export function t(text, values = {}) {
+  return (translation?.messages[text] ?? text).replace(
+    /\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (_, name, first, second) => {
+      const value = values[name];
+      if (second === undefined) return typeof value === "number" ? whole(value) : value;
+      return (translation ? translation.plurals.select(Number(value)) === "one" : value === 1) ? first : second;
+    });
+}
 
 const MINUS = "\u2212";
 const NO_BREAK = "\u00a0";

@@ -2,7 +2,7 @@
 // readers. The sentences are those of narrative/narrative.js.
 import { computed, effect, signal } from "@preact/signals";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
-import { metres, sentence, t } from "./format.js";
+import { metres, nameOf, sentence, t } from "./format.js";
 import { canPlay, conditionsShown, raceInView, resumableOnStage, shownRun } from "./on-stage.js";
 import { page } from "./page-state.js";
 import { knownRace } from "./race.js";
@@ -38,7 +38,7 @@ function testsOf(run) {
 function ghostsInWords() {
   if (page.ghost.value === null) return null;
   const run = runs.value.get(page.ghost.value);
-  const title = run ? run.name || sentence(run.kind) : t("another run");
+  const title = run ? nameOf(run) || sentence(run.kind) : t("another run");
   const distances = (scene.value?.ghost_lanes ?? []).map(({ name, distance_m }) => `${name} ${metres(distance_m)}`);
   return t("Ghosts: {run}", { run: title + (distances.length ? ` (${distances.join(", ")})` : "") });
 }

@@ -1,6 +1,6 @@
 // A run in words: its name, what is told beside it, and what came of it.
 import { kindOf } from "./features.js";
-import { count, distanceApart, metres, percentage, sentence, whole } from "./format.js";
+import { count, distanceApart, metres, nameOf, percentage, sentence, whole } from "./format.js";
 import { commonInWords, differenceInWords, fieldsOf, variedIn } from "./run-settings.js";
 import { distanceOf } from "./runs.js";
 import { earlyEndOf } from "./narrative/moment.js";
@@ -22,7 +22,7 @@ export const isNamed = (run) => "damaged" in run || run.is_named;
 /** The name of a run by itself. @param {AnyRun} run */
 export function titleOf(run) {
   if ("damaged" in run) return run.name || `A ${run.kind ?? "run"} that cannot be read`;
-  return kindOf(run)?.titleOf(run) ?? (run.name || sentence(run.kind));
+  return kindOf(run)?.titleOf(run) ?? (nameOf(run) || sentence(run.kind));
 }
 
 /** Words that begin a line: a symbol stays as it is. @param {string} words */

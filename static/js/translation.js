@@ -1,42 +1,56 @@
 // The page in another language than English: its catalogue, and how the texts of templates are looked up in it. Loaded
 // where the page's HTML says that language (app/api/pages.py). English texts are the keys of catalogues.
 import htm from "htm";
+import { nameIn, sentencesIn } from "./server-sentences.js";
 
 /** @import { h as createElement } from "preact" */
+/** @import { Say } from "./server-sentences.js" */
 
 /** @typedef {Record<string, string>} Messages English text → the same in the page's language */
 /**
  * `mark`: of decimals. `tagOf`: the template tag of htm. `answer`: what the server names, as agents. `plates`: patterns
- * of words of the labels in the 3D view, with what is written for them. `label`: of the run in the picture.
+ * of words of the labels in the 3D view, with what is written for them. `label`: of the run in the picture. `said`:
+ * what the server says in a sentence. `name`: a name of a run that the server has made.
  * @typedef {{
  *   messages: Messages, mark: string, plurals: Intl.PluralRules, listed: (items: string[]) => string,
  *   tagOf: (h: typeof createElement) => ReturnType<typeof htm.bind<any>>,
  *   answer: <Answer>(answer: Answer) => Answer,
- *   plates: [string, string][], label: (text: string) => string,
+ *   plates: [string, string][], label: (text: string) => string, said: (text: string) => string,
+ *   name: (text: string) => string,
  * }} Translation
  */
 
-/** @param {string} lang @returns {Promise<Translation>} */
-export async function translationTo(lang) {
+/**
+ * @param {string} lang
+ * @param {Say} t gives a text of the catalogue its values
+ * @returns {Promise<Translation>}
+ */
+export async function translationTo(lang, t) {
   /** @type {Messages} */
   let messages = {};
+  /** @type {Messages} */
+  let sentences = {};
   /** @type {[string, string][]} */
   let plates = [];
   try {
     const answer = await fetch(new URL(`../messages/${lang}.json`, import.meta.url));
     const catalogue = await answer.json();
-    messages = { ...catalogue.server, ...catalogue.page };
+    sentences = catalogue.sentences;
+    messages = { ...sentences, ...catalogue.server, ...catalogue.page };
     plates = patternsOf(catalogue.plates);
   } catch {
     // In English rather than not at all.
   }
   const parts = new Intl.NumberFormat(lang).formatToParts(0.5);
+  const mark = parts.find(({ type }) => type === "decimal")?.value ?? ".";
   const lists = new Intl.ListFormat(lang);
+  const said = sentencesIn(sentences, { messages, mark, t });
   return {
-    messages, mark: parts.find(({ type }) => type === "decimal")?.value ?? ".", plurals: new Intl.PluralRules(lang),
+    messages, mark, plurals: new Intl.PluralRules(lang), said,
     listed: (items) => lists.format(items), tagOf: (h) => tagIn(h, messages),
-    answer: (answer) => named(answer, messages), plates,
+    answer: (answer) => named(answer, said), plates,
     label: (text) => labelIn(text, messages, plates),
+    name: (text) => nameIn(text, said, mark),
   };
 }
 
@@ -153,19 +167,20 @@ export const labelIn = (text, messages, patterns) => messages[text] ?? text.repl
 /** What people read of an answer; all else has identifiers, links and what people typed. */
 const TEXTS = new Set([
   "title", "titles", "choice_titles", "description", "about", "adjective", "help", "headerHint", "words", "does",
+  "what", "why", "missed", "unexplained", "compares", "criterion", "sentences",
 ]);
 
 /**
- * An answer of the server in which titles and descriptions are those of the catalogue.
+ * An answer of the server in which titles, descriptions and sentences are those of the catalogue.
  * @template Answer
  * @param {Answer} answer
- * @param {Messages} messages
+ * @param {(text: string) => string} said
  * @returns {Answer}
  */
-export function named(answer, messages) {
+export function named(answer, said) {
   /** @type {(value: any, isText: boolean) => any} */
   const each = (value, isText) => {
-    if (typeof value === "string") return isText ? messages[value] ?? value : value;
+    if (typeof value === "string") return isText ? said(value) : value;
     if (Array.isArray(value)) return value.map((item) => each(item, isText));
     if (value === null || typeof value !== "object") return value;
     return Object.fromEntries(Object.entries(value).map(([name, of]) => [name, each(of, isText || TEXTS.has(name))]));

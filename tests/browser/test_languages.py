@@ -22,7 +22,7 @@ from tests.conftest import new_page
 pytestmark = pytest.mark.timeout(300)
 
 NAMES = (
-    *("Racing Hexapods", "Race: ", "English", "Deutsch", "Français"),
+    *("Racing Hexapods", "English", "Deutsch", "Français"),
     *("Q-learning", "Greedy", "Two-step"),
 )
 """What has one name in every language; agents are called as in the field's papers."""
@@ -104,9 +104,13 @@ def test_all_of_watch_is_in_the_language_of_the_link(
             hold(api, race, time_s)
             # Before it the stage had the practice that the race needed.
             shown_run = page.get_by_role("group", name=full_width("Shown run"), exact=True)
-            expect(shown_run).to_contain_text("Race: ")
+            expect(shown_run).to_contain_text(full_width("Race: "))
             expect(page.get_by_text(full_width(moment)).first).to_be_visible()
             texts[moment] = untranslated(page)
+        hold(api, race, 5.0)
+        page.get_by_role("button", name=full_width("Explain this step")).first.click()
+        expect(page.get_by_text(full_width("The step brought")).first).to_be_visible()
+        texts["why"] = untranslated(page)
         page.keyboard.press("?")
         # What features have in the help comes later.
         help_links = page.get_by_role("dialog").get_by_role("link")

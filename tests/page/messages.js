@@ -5,7 +5,6 @@ import { parse } from "espree";
 import { keysIn } from "../../static/js/translation.js";
 
 const FOLDERS = ["static/js", "static/features"];
-export const CATALOGUES = "static/messages";
 
 /** The page's modules. */
 export const modules = () => FOLDERS.flatMap((folder) =>
@@ -50,10 +49,6 @@ function keysBelow(node) {
 /** The keys of a module, in its order. @param {string} path */
 export const keysOfModule = (path) => [...new Set(keysBelow(
   parse(readFileSync(path, "utf-8"), { ecmaVersion: "latest", sourceType: "module" })))];
-
-/** Catalogue by language. @returns {Record<string, Record<"page" | "server" | "plates", Record<string, string>>>} */
-export const catalogues = () => Object.fromEntries(readdirSync(CATALOGUES).map((name) =>
-  [name.replace(".json", ""), JSON.parse(readFileSync(join(CATALOGUES, name), "utf-8"))]));
 
 /** The placeholders of a text: "{name}", "{steps|}". @param {string} text */
 export const placeholdersOf = (text) =>

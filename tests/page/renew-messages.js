@@ -2,7 +2,8 @@
 // one, which the checks name, and those that no module has any more go. Run by `make messages`.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { CATALOGUES, catalogues, keysOfModule, modules } from "./messages.js";
+import { CATALOGUES, catalogues } from "./catalogues.js";
+import { keysOfModule, modules } from "./messages.js";
 import { PHONE, WATCH } from "./translated.js";
 
 const needed = [...WATCH, ...PHONE].flatMap(keysOfModule);

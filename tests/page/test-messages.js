@@ -3,8 +3,10 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { LANGUAGES } from "../../static/js/page-state.js";
 import { t } from "../../static/js/format.js";
+import { nameIn, sentencesIn } from "../../static/js/server-sentences.js";
 import { keysIn, labelIn, named, patternsOf, translated } from "../../static/js/translation.js";
-import { catalogues, keysOfModule, modules, placeholdersOf } from "./messages.js";
+import { catalogues } from "./catalogues.js";
+import { keysOfModule, modules, placeholdersOf } from "./messages.js";
 import { PHONE, WATCH } from "./translated.js";
 
 /** A template as the tag gets it. @param {TemplateStringsArray} statics */
@@ -30,8 +32,8 @@ test("a catalogue has no text that no module has", () => {
 });
 
 test("a translation has no other placeholders than its text, and no signs that a template would read", () => {
-  for (const { page, server } of Object.values(catalogues())) {
-    for (const [key, text] of Object.entries({ ...server, ...page })) {
+  for (const { page, server, sentences } of Object.values(catalogues())) {
+    for (const [key, text] of Object.entries({ ...server, ...page, ...sentences })) {
       assert.deepEqual(placeholdersOf(text).filter((name) => !placeholdersOf(key).includes(name)), [], text);
       assert.doesNotMatch(text, /[<>"]/, key);
     }
@@ -63,7 +65,7 @@ test("a translated template has its fields where the translation has them", () =
 test("of an answer the titles are translated, and what people typed stays", () => {
   const world = { name: "Ice", title: "Ice", description: "Ice", settings: { default: "Ice" } };
   const answer = { name: "Ice", worlds: [world] };
-  assert.deepEqual(named(answer, { Ice: "Eis" }), {
+  assert.deepEqual(named(answer, (text) => ({ Ice: "Eis" })[text] ?? text), {
     name: "Ice", worlds: [{ ...world, title: "Eis", description: "Eis" }],
   });
 });
@@ -87,4 +89,19 @@ test("the label of the picture has its words in another language, and a run's na
   assert.equal(label("On the start line"), "An der Startlinie");
   assert.equal(label("Race: Greedy, Two-step, step 18 of 20"), "Race: Greedy, Two-step, Schritt 18 von 20");
   assert.equal(label("Two of a step, Two-step at step 3 of 20"), "Two of a step, Two-step bei Schritt 3 von 20");
+});
+
+test("a sentence of the server is known by its pattern, and is said anew with its values", () => {
+  const sentences = {
+    "{Robot} came {distance} in {steps} {steps|step|steps}.":
+      "{Robot} kam {distance} in {steps} {steps|Schritt|Schritten}.",
+    "the {Kind} one": "der {Kind}",
+  };
+  /** @type {Record<string, string>} */
+  const messages = { ...sentences, large: "große", "It fell.": "Er fiel." };
+  const said = sentencesIn(sentences, { messages, mark: ",", t: (key, values) => t(messages[key], values) });
+  assert.equal(said("the large one came 2.5 mm in 1 step."), "der große kam 2,5\u00a0mm in 1 Schritt.");
+  assert.equal(said("It fell. X came -1.0 m in 12,000 steps."), "Er fiel. X kam −1,0\u00a0m in 12\u202f000 Schritten.");
+  assert.equal(said("Nothing like it."), "Nothing like it.");
+  assert.equal(nameIn("the large one, α 0.5", said, ","), "der große, α 0,5");
 });

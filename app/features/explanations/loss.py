@@ -208,7 +208,8 @@ def loss_view(
     tried = count_tried(learner_before(len(compared) - 1), (move.observation for move in compared))
     made_m = ordered_sum(move.reward_m for move in compared) / len(compared)
     best_m = ordered_sum(move.best_reward_m for move in compared) / len(compared)
-    counts = {kind: reasons.count(kind) for kind in ("untried", "undervalued", "not chosen")}
+    kinds: Sequence[PassedOver] = ("untried", "undervalued", "not chosen")
+    counts = {kind: reasons.count(kind) for kind in kinds}
     better = len(compared) - reasons.count(None)
     return LossView(
         **standing._asdict(),
@@ -223,16 +224,15 @@ def loss_view(
         undervalued=counts["undervalued"],
         not_chosen=counts["not chosen"],
         sentences=[
-            _about_table(tried, practised_steps),
-            f"Its {counted(len(compared), 'step')} brought {in_millimetres(made_m)} each on "
-            f"average; the best move from where it stood, simulated, would have brought "
-            f"{in_millimetres(best_m)}.",
-            _about_better(len(compared), better, counts),
+            about_table(tried, practised_steps),
+            about_steps(len(compared), made_m, best_m),
+            about_better(len(compared), better, counts),
         ],
     )
 
 
-def _about_table(tried: Tried, practised_steps: int | None) -> str:
+def about_table(tried: Tried, practised_steps: int | None) -> str:
+    """Return how much of its table a learner had tried, in a sentence."""
     practice = (
         f"In {counted(practised_steps, 'step')} of practice"
         if practised_steps
@@ -246,14 +246,29 @@ def _about_table(tried: Tried, practised_steps: int | None) -> str:
     )
 
 
-def _about_better(steps: int, better: int, counts: Mapping[str, int]) -> str:
+def about_steps(steps: int, made_m: float, best_m: float) -> str:
+    """Return what the steps of a lane brought on average beside the best moves, in a sentence."""
+    return (
+        f"Its {counted(steps, 'step')} brought {in_millimetres(made_m)} each on average; the best "
+        f"move from where it stood, simulated, would have brought {in_millimetres(best_m)}."
+    )
+
+
+def about_better(steps: int, better: int, counts: Mapping[PassedOver, int]) -> str:
+    """Return in a sentence in how many steps a better move was passed over, and why.
+
+    Args:
+        steps: of the lane.
+        better: number of those in which the best move was better.
+        counts: numbers of these by the reason.
+    """
     more = f"{1000 * BETTER_M:g} mm"
     if not better:
         return (
             f"In none of its {counted(steps, 'step')} would another move have brought {more} more: "
             "one step ahead it could do no better."
         )
-    reasons = {
+    reasons: Mapping[PassedOver, str] = {
         "untried": "it had never tried that move",
         "undervalued": "its table held that move for worse",
         "not chosen": "its table held that move for no worse",

@@ -64,8 +64,8 @@ def sentences_of(
         return StepSentences(what, why, _missed_simulated(chosen, logged.reward_m))
     if choice is None:
         return StepSentences(what, None, None)
-    early = ", by the values before it learned from the step before" * explained.chose_early
-    why = f"{_why(choice, names)}{early}."
+    early = " It went by the values before it learned from the step before." * explained.chose_early
+    why = f"{_why(choice, names)}.{early}"
     return StepSentences(what, why, _missed(choice, explained.visits, names))
 
 

@@ -1,5 +1,6 @@
 // Requests of explanations: of a step, of why a lane loses, and of the table after a step.
 import { call } from "../../js/api.js";
+import { inWords } from "../../js/format.js";
 
 /** @import { Explanation, Loss, StateTable } from "../../js/types.js" */
 
@@ -7,15 +8,15 @@ import { call } from "../../js/api.js";
  * A step of a run, explained.
  * @type {(of: { run_id: string, lane: number, step: number }) => Promise<Explanation>}
  */
-export const getExplanation = ({ run_id, lane, step }) => {
+export const getExplanation = async ({ run_id, lane, step }) => {
   const query = new URLSearchParams({ step: `${step}`, lane: `${lane}` });
-  return call("GET", `runs/${encodeURIComponent(run_id)}/explain?${query}`);
+  return inWords(await call("GET", `runs/${encodeURIComponent(run_id)}/explain?${query}`));
 };
 
 /** Why a lane loses its race. @type {(of: { run_id: string, lane: number, clock: string }) => Promise<Loss>} */
-export const getLoss = ({ run_id, lane, clock }) => {
+export const getLoss = async ({ run_id, lane, clock }) => {
   const query = new URLSearchParams({ lane: `${lane}`, clock });
-  return call("GET", `races/${encodeURIComponent(run_id)}/loss?${query}`);
+  return inWords(await call("GET", `races/${encodeURIComponent(run_id)}/loss?${query}`));
 };
 
 /**

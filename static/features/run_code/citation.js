@@ -1,7 +1,7 @@
 // How to cite the run on stage, in the help.
 import { useState } from "preact/hooks";
 import { html } from "../../js/components/elements.js";
-import { t } from "../../js/format.js";
+import { nameOf, t } from "../../js/format.js";
 import { shownRun } from "../../js/on-stage.js";
 import { linkTo } from "../../js/page-state.js";
 import { copy } from "../../js/page.js";
@@ -27,7 +27,9 @@ export function Citation() {
   };
   return html`
     <h2>Cite this run</h2>
-    <p class="dim">${run.name}: version, seed, hash of what it learned or recorded, and the command that repeats it.</p>
+    <p class="dim">
+      ${nameOf(run)}: version, seed, hash of what it learned or recorded, and the command that repeats it.
+    </p>
     <p><button type="button" class="secondary compact" onClick=${cite}>Copy the citation</button></p>
     ${text && html`<pre class="citation" tabindex="0" role="region" aria-label="Citation">${text}</pre>`}
   `;

@@ -2,7 +2,7 @@
 import { setStage } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
-import { clockTime, count, decision, metres, sentence, t, whole } from "../format.js";
+import { clockTime, count, decision, metres, nameOf, sentence, t, whole } from "../format.js";
 import { narrative, whyMarching } from "../headline.js";
 import { isLoser, isOver, isTimedOut, standings, timeline } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
@@ -99,7 +99,7 @@ function BranchWords() {
   const happens = joinedBySteps(race ? disturbancesOf(race) : []).map(inTime).join("; ");
   if (!branch) return happens && html`<p class="happened">${sentence(happens)}.</p>`;
   const original = originalRace.value;
-  const title = original?.name || t("another race");
+  const title = (original && nameOf(original)) || t("another race");
   return html`
     <p class="happened">
       The same as <a href=${`#runs?search=${branch.race_id}`}>${title}</a> before step ${branch.step + 1}.

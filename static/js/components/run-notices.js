@@ -1,6 +1,6 @@
 // Notices in the foot of the panel: a run that was interrupted or failed, or is not on the stage. Loaded when needed.
 import { pending, resumeRun, showOnStage } from "../actions.js";
-import { sentence, t } from "../format.js";
+import { nameOf, sentence, t } from "../format.js";
 import { interruptedRun, offStage, shownRun } from "../on-stage.js";
 import { isOperator, mayChange } from "../selectors.js";
 import { isAway } from "../store.js";
@@ -58,7 +58,7 @@ function Failure() {
 function Interrupted() {
   const run = interruptedRun.value;
   if (!run) return null;
-  const values = { run: sentence(run.kind), name: run.name, step: run.progress.done, steps: run.progress.total };
+  const values = { run: sentence(run.kind), name: nameOf(run), step: run.progress.done, steps: run.progress.total };
   const words = run.kind === "training"
     ? t("{run} “{name}” was interrupted at step {step} of {steps}; it is not on the stage.", values)
     : t("{run} “{name}” was interrupted; it is not on the stage.", values);

@@ -1,6 +1,6 @@
 // Notes over the picture of a run: what ended and how to go on, and what comes next. Loaded with the first of them.
 import { useEffect, useState } from "preact/hooks";
-import { t } from "../format.js";
+import { nameOf, t } from "../format.js";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { narrative } from "../headline.js";
 import { isDecided, isStale } from "../on-stage.js";
@@ -53,7 +53,8 @@ function AnnouncementNote() {
     return () => clearInterval(timer);
   }, [announced]);
   if (!announced) return null;
-  const name = runs.value.get(announced.run_id)?.name ?? t("a race");
+  const run = runs.value.get(announced.run_id);
+  const name = run ? nameOf(run) : t("a race");
   const what = announced.run_id === playback.value?.run_id ? t("the same again") : t("{name}, again", { name });
   return html`
     <div class="stage-note">

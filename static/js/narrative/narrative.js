@@ -1,6 +1,6 @@
 // Every sentence about the run on stage and the moment of it that is shown: one table of states × what is said, from
 // what the API tells. The page, phones and projectors show what it returns, and say no more.
-import { labelInWords, sentence, t, times } from "../format.js";
+import { labelInWords, nameOf, sentence, t, times } from "../format.js";
 import { earlyEndOf, isActive, isTimedOutIn, rowsOf } from "./moment.js";
 import {
   brokenOff, halting, lead, leaderOf, leftOff, practised, practising, reasonOf, ruleAfter, ruleBefore, ruleOfNone,
@@ -272,10 +272,12 @@ function lastPicture({ kind, progress: { done } }, recorded) {
 
 /** @param {Facts} facts @returns {Chip[]} */
 function chipsOf(facts) {
-  const { scene, conditions, ghosts } = facts;
+  const { run, scene, conditions, ghosts } = facts;
+  const label = scene?.label ?? "";
+  const named = run && label.startsWith(run.name) ? nameOf(run) + label.slice(run.name.length) : label;
   const phase = PHASES[scene?.phase ?? ""];
   return [
-    { kind: "strong", words: labelInWords(scene?.label ?? "") || nothing(facts) },
+    { kind: "strong", words: labelInWords(named) || nothing(facts) },
     ...(phase ? [phase] : []),
     ...(conditions.length ? [{ kind: "disturbance", words: sentence(conditions.join(", ")) }] : []),
     ...replayOf(facts),
