@@ -1,5 +1,6 @@
 """What the page makes of sentences of the server in other languages, as its scripts say them."""
 
+import ast
 import json
 import re
 import subprocess
@@ -9,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from app.api.descriptions import as_sentence
 from hexapods import assets
 
 FULL_WIDTH = "full width"
@@ -60,3 +62,43 @@ def keys(language: str) -> Set[str]:
     """Return the keys of the sentences that a catalogue has."""
     catalogue = json.loads((assets.static_dir() / f"messages/{language}.json").read_text("utf-8"))
     return frozenset(catalogue["sentences"])
+
+
+_PLACE = re.compile(r"\{[^}]*\}")
+
+
+def without_names(text: str) -> str:
+    """Return a key, or a text of Python with fields, without the names of its places."""
+    return _PLACE.sub("{}", text)
+
+
+def texts_in(source: str) -> set[str]:
+    """Return the texts of a module that are sentences, as an error of the server is said."""
+    return {_said(node) for node in ast.walk(ast.parse(source)) if _is_text(node)}
+
+
+def refusals_in(source: str) -> set[str]:
+    """Return the texts with which a module refuses something, as an error of the server is said."""
+    calls = [
+        node.exc
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call) and node.exc.args
+    ]
+    return {
+        _said(call.args[0])
+        for call in calls
+        # What is stored is damaged: no answer of the server.
+        if ast.unparse(call.func) != "ValueError" and _is_text(call.args[0])
+    }
+
+
+def _is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.JoinedStr) or (
+        isinstance(node, ast.Constant) and isinstance(node.value, str)
+    )
+
+
+def _said(node: ast.AST) -> str:
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+    texts = [str(part.value) if isinstance(part, ast.Constant) else "{}" for part in parts]
+    return as_sentence(without_names("".join(texts)))

@@ -22,6 +22,7 @@ from app.features.explanations.loss import (
 from app.features.explanations.names import ActionNames
 from app.features.explanations.sentences import SearchFindings, sentences_of
 from app.storage.run_names import branch_name, race_name, training_name
+from hexapods import assets
 from hexapods.agents.experts import MeasuredExpert, PlannedExpert
 from hexapods.agents.explanation import ChoiceExplanation, Future
 from hexapods.agents.registry import compares
@@ -35,7 +36,16 @@ from hexapods.runs.rebuilding import ExplainedStep
 from hexapods.runs.transition_log import Logged
 from tests.agents.test_explanation import LEARNERS, explained
 from tests.agents.test_explanation import ExplainedStep as LearnersStep
-from tests.server_sentences import FULL_WIDTH, Said, english_left, keys, said
+from tests.server_sentences import (
+    FULL_WIDTH,
+    Said,
+    english_left,
+    keys,
+    refusals_in,
+    said,
+    texts_in,
+    without_names,
+)
 
 NAMES = ("Q-learning", "Greedy", "Two-step", "Look-ahead")
 MADE = Action(0, 1)
@@ -136,6 +146,28 @@ def run_names() -> Iterator[str]:
         yield branch_name(race, 12)
 
 
+_CLASSROOM = "app/features/classroom"
+REFUSING = [
+    f"{_CLASSROOM}/{name}.py"
+    for name in ("press_book", "room", "room_registry", "room_runs", "rooms", "seats", "teaching")
+]
+"""Modules whose refusals a phone can meet, all of them."""
+OTHERS = [
+    *(f"{_CLASSROOM}/{name}.py" for name in ("card_starts", "pages", "participant_routes")),
+    *(f"{_CLASSROOM}/{name}.py" for name in ("questions", "room_routes")),
+    *("app/features/demo/allowance.py", "app/features/explanations/loss.py"),
+    *("app/features/explanations/rebuilt_practice.py", "app/features/explanations/service.py"),
+    *("app/api/concurrency_limit.py", "app/api/rate_limit.py", "app/jobs/jobs.py"),
+    *("app/jobs/queue.py", "app/jobs/stopping.py", "app/jobs/supervisor.py"),
+    *("app/storage/artifacts.py", "app/storage/disk_space.py"),
+]
+"""Modules of which a phone or Watch can meet some."""
+
+
+def source(module: str) -> str:
+    return (assets.static_dir().parent / module).read_text("utf-8")
+
+
 @pytest.fixture(scope="module")
 def all_said() -> Said:
     return said([*why_sentences(), *loss_sentences()], run_names())
@@ -150,9 +182,19 @@ def test_a_sentence_comes_out_whole(all_said: Said) -> None:
 
 
 def test_no_language_has_a_sentence_that_the_server_does_not_say(all_said: Said) -> None:
+    errors = set().union(*(texts_in(source(module)) for module in (*REFUSING, *OTHERS)))
+    unused = {key for key in keys("de") - all_said.used if without_names(key) not in errors}
+
+    assert unused == set()
     for language in all_said.by_language.keys() - {FULL_WIDTH}:
-        assert keys(language) - all_said.used == set()
         assert keys(language) == keys("de")
+
+
+def test_every_refusal_of_a_room_is_there() -> None:
+    refusals = set().union(*(refusals_in(source(module)) for module in REFUSING))
+
+    assert len(refusals) > 20
+    assert refusals - {without_names(key) for key in keys("de")} == set()
 
 
 def test_numbers_are_those_of_the_page(all_said: Said) -> None:

@@ -1,6 +1,6 @@
 // Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
-import { inWords, languageHeader, t } from "./format.js";
+import { inWords, languageHeader, said, t } from "./format.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Annotations, Curve, Curves, Disturbance } from "./types.js" */
@@ -185,7 +185,7 @@ const fieldOf = (error) => {
  */
 export const refusal = (status, problem) =>
   new RequestError(
-    problem.detail || problem.title || t("The server answered {status}.", { status }), status,
+    said(problem.detail || problem.title || "") || t("The server answered {status}.", { status }), status,
     [...problem.errors ?? [], { field: problem.field }].map(fieldOf).filter(Boolean), problem.legs,
   );
 

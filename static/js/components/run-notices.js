@@ -1,6 +1,6 @@
 // Notices in the foot of the panel: a run that was interrupted or failed, or is not on the stage. Loaded when needed.
 import { pending, resumeRun, showOnStage } from "../actions.js";
-import { nameOf, sentence, t } from "../format.js";
+import { nameOf, said, sentence, t } from "../format.js";
 import { interruptedRun, offStage, shownRun } from "../on-stage.js";
 import { isOperator, mayChange } from "../selectors.js";
 import { isAway } from "../store.js";
@@ -42,7 +42,7 @@ function Failure() {
     <div class="notice bad">
       <p>
         <b>${run.kind === "race" ? t("The race failed.") : t("The training failed.")}</b>
-        ${" "}${inFormWords(run.error ?? "")}
+        ${" "}${said(inFormWords(run.error ?? ""))}
       </p>
       <p>
         ${isOperator.value ? t("Change what it names, or let it go on from its last checkpoint.")
@@ -64,7 +64,7 @@ function Interrupted() {
     : t("{run} “{name}” was interrupted; it is not on the stage.", values);
   return html`
     <div class="notice">
-      <p><b>${words}</b> ${run.error}</p>
+      <p><b>${words}</b> ${said(run.error ?? "")}</p>
       <${ResumeButton} run=${run} />
     </div>
   `;
