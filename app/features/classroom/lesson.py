@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import Field, TypeAdapter, ValidationError
@@ -43,8 +43,45 @@ MAX_CARDS = 60
 MAX_AIMS = 12
 MAX_MAY = 30
 MIN_MINUTES, MAX_MINUTES = 5, 240
-_ONCE_MORE = "Answer alone. The same question comes again at the end of the lesson."
-_AGAIN = "The question of the beginning, once more."
+
+
+class WordsAround(NamedTuple):
+    """Texts of the two questions around a lesson, which a room asks where it has one.
+
+    Attributes:
+        before: title of the first question.
+        once_more: text of the first question where the second is the same.
+        after: title of the second question.
+        again: text of the second question where it is the first one.
+    """
+
+    before: str | None = None
+    once_more: str = ""
+    after: str | None = None
+    again: str = ""
+
+
+_NO_WORDS = WordsAround()
+_AROUND = {
+    "en": WordsAround(
+        "Before the lesson",
+        "Answer alone. The same question comes again at the end of the lesson.",
+        "After the lesson",
+        "The question of the beginning, once more.",
+    ),
+    "de": WordsAround(
+        "Vor der Lektion",
+        "Antworte allein. Dieselbe Frage kommt am Ende der Lektion noch einmal.",
+        "Nach der Lektion",
+        "Die Frage vom Anfang, noch einmal.",
+    ),
+    "fr": WordsAround(
+        "Avant la leçon",
+        "Réponds sans les autres. La même question revient à la fin de la leçon.",
+        "Après la leçon",
+        "La question du début, encore une fois.",
+    ),
+}
 LANGUAGE = r"^[a-z]{2,3}(-[A-Za-z0-9]{2,8}){0,3}$"
 Go = Literal["training", "race", "what-if"]
 
@@ -145,19 +182,19 @@ class Lesson(Record):
         """The cards as a room shows them, between the questions before and after the lesson."""
         if self.before is None:
             return self.cards
-        is_english = self.language.partition("-")[0] == "en"
+        words = _AROUND.get(self.language.partition("-")[0], _NO_WORDS)
         first, last = self.before, self.after or self.before
         return (
             Card(
-                title="Before the lesson" if is_english else None,
-                text=_ONCE_MORE if is_english and self.after is None else "",
+                title=words.before,
+                text=words.once_more if self.after is None else "",
                 may={},
                 ask=first.ask,
             ),
             *self.cards,
             Card(
-                title="After the lesson" if is_english else None,
-                text=_AGAIN if is_english and self.after is None else "",
+                title=words.after,
+                text=words.again if self.after is None else "",
                 may={},
                 ask=last.ask,
                 reveal=Reveal(answer=last.right),

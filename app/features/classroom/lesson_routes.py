@@ -24,13 +24,17 @@ from app.features.classroom.lesson_file import (
     read_plain_values,
     write_file,
 )
-from app.features.classroom.lessons import FoundLesson, Lessons
+from app.features.classroom.lessons import ENGLISH, FoundLesson, Lessons, in_all_languages
 from app.features.classroom.response_models import LessonList, LessonView, ListedLesson, NewLesson
 from app.features.classroom.rooms import Rooms
 from hexapods.domain.errors import InvalidInput
 
 YAML_TYPES = (MEDIA_TYPE, "text/yaml", "application/x-yaml", "text/x-yaml")
 _TYPES = {"application/json": "json", **dict.fromkeys(YAML_TYPES, "yaml")}
+LanguageQuery = Annotated[
+    str,
+    Query(max_length=40, description="language of built-in lessons, such as `de`; others have one"),
+]
 LessonPath = Annotated[str, Path(description="id of the lesson", max_length=100)]
 
 router = api_router(prefix="/lessons", tags=["lessons"])
@@ -87,7 +91,9 @@ def add_lesson(
 
 @router.get("", summary="List lessons")
 @policy(access=LESSONS)
-def list_lessons(services: ServicesDep) -> RecordResponse[LessonList]:
+def list_lessons(
+    services: ServicesDep, language: LanguageQuery = ENGLISH
+) -> RecordResponse[LessonList]:
     """Return the lessons that are built in, and those that were stored."""
     items = [
         ListedLesson(
@@ -101,7 +107,7 @@ def list_lessons(services: ServicesDep) -> RecordResponse[LessonList]:
             cards=len(stored.lesson.cards),
             is_built_in=stored.is_built_in,
         )
-        for stored in services.of(Lessons).all()
+        for stored in services.of(Lessons).all(language)
     ]
     return RecordResponse(LessonList(items=items))
 
@@ -117,14 +123,16 @@ def get_lesson(
     request: Request,
     lesson_id: LessonPath,
     reader: ReaderDep,
+    *,
     format: Annotated[Literal["json", "yaml"] | None, Query()] = None,  # noqa: A002
+    language: LanguageQuery = ENGLISH,
 ) -> RecordResponse[LessonView] | Response:
     """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server.
 
     While an open room teaches the lesson, operators alone get all of it: for others it has neither
     the revealed parts nor the cards after the one that the room shows.
     """
-    stored, is_taught = services.of(Lessons).get(lesson_id), False
+    stored, is_taught = services.of(Lessons).get(lesson_id, language), False
     if reader is not None:
         stored, is_taught = _while_taught(services, stored)
     if negotiated(request, format, ("json", "yaml"), _TYPES) == "yaml":
@@ -135,7 +143,9 @@ def get_lesson(
 
 def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson, bool]:
     """Return the part of a lesson that all may read, and whether an open room teaches it."""
-    shown = services.of(Rooms).taught(stored.lesson)
+    rooms = services.of(Rooms)
+    taught = (rooms.taught(lesson) for lesson in in_all_languages(stored))
+    shown = min((card for card in taught if card is not None), default=None)
     if shown is None:
         return stored, False
     lesson = stored.lesson

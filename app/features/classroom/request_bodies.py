@@ -25,9 +25,13 @@ VALID.update(
 
 
 class RoomBody(Body):
-    """A room: its lesson, by its id or itself, and whether participants have to be approved."""
+    """A room: its lesson, by its id or itself, and whether participants have to be approved.
+
+    A built-in lesson can be had in a language, such as `de`; others have one.
+    """
 
     lesson: str | dict[str, JsonValue] | None = None
+    language: Annotated[str, Field(max_length=40)] = "en"
     needs_approval: Annotated[bool, Field(strict=True)] = False
 
 

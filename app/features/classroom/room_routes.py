@@ -84,7 +84,7 @@ async def open_room(
     def create() -> Room:
         lesson: Any = None
         if isinstance(body.lesson, str):
-            lesson = services.of(Lessons).get(body.lesson)
+            lesson = services.of(Lessons).get(body.lesson, body.language)
         elif body.lesson is not None:
             lesson = read_lesson(body.lesson)
             services.of(CardStarts).check(lesson, services.store)

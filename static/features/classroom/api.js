@@ -1,5 +1,6 @@
 // Lessons and rooms over the REST API.
 import { addressOf, call, roomAddressOf, start } from "../../js/api.js";
+import { translation } from "../../js/format.js";
 
 /** @import { Deleted } from "../../js/api.js" */
 /** @import { Classroom, Clock, Joined, LessonDocument, LessonList, LessonView } from "../../js/types.js" */
@@ -7,13 +8,16 @@ import { addressOf, call, roomAddressOf, start } from "../../js/api.js";
 /** @import { QTable, Results, Run, TeachingState, WhatIfAnswer } from "../../js/types.js" */
 
 const YAML = "application/yaml";
+/** The language in which built-in lessons are read. @type {Record<string, string>} */
+const language = translation ? { language: document.documentElement.lang } : {};
+const inItsLanguage = translation ? `?${new URLSearchParams(language)}` : "";
 
 // ---- lessons
 
 /** @returns {Promise<LessonList>} */
-export const listLessons = () => call("GET", "lessons");
+export const listLessons = () => call("GET", `lessons${inItsLanguage}`);
 /** @type {(id: string) => Promise<LessonView>} */
-export const getLesson = (id) => call("GET", `lessons/${encodeURIComponent(id)}`);
+export const getLesson = (id) => call("GET", `lessons/${encodeURIComponent(id)}${inItsLanguage}`);
 /** @type {(lesson: LessonDocument) => Promise<NewLesson>} */
 export const addLesson = (lesson) => call("POST", "lessons", lesson);
 /** Store the lesson of a file, in YAML or JSON. @type {(file: File) => Promise<NewLesson>} */
@@ -24,12 +28,13 @@ export const addLessonFile = (file) => {
 /** @type {(id: string) => Promise<Deleted>} */
 export const deleteLesson = (id) => call("DELETE", `lessons/${encodeURIComponent(id)}`);
 /** Where the file of a lesson is. @param {string} id */
-export const lessonFile = (id) => addressOf(`lessons/${encodeURIComponent(id)}?format=yaml`);
+export const lessonFile = (id) => addressOf(
+  `lessons/${encodeURIComponent(id)}?${new URLSearchParams({ format: "yaml", ...language })}`);
 
 // ---- rooms
 
 /** @type {(body: { lesson: string | null, needs_approval: boolean }) => Promise<NewRoom>} */
-export const openRoom = (body) => start("rooms", body);
+export const openRoom = (body) => start("rooms", { ...body, ...language });
 
 /** @param {string} code */
 const pathOf = (code) => `rooms/${encodeURIComponent(code)}`;

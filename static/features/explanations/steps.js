@@ -141,13 +141,19 @@ export const legsInWords = (legs) => t("legs {legs}", { legs: legs.join("+") });
 export const stateInWords = (cells, grid) =>
   cells.map((cell, pair) => `${legsInWords(grid.pairs[pair])} ${cellName(grid, cell, " mm")}`).join(", ");
 
+/** The cell of the foot grid in its middle. */
+const HOME = 0;
+
 /**
  * A move: "legs 1+4 to front left".
  * @param {Move} move
  * @param {FootCells} grid
  */
-export const moveInWords = ([pair, cell], grid) =>
-  t("legs {legs} to {cell}", { legs: grid.pairs[pair].join("+"), cell: cellName(grid, cell, " mm") });
+export function moveInWords([pair, cell], grid) {
+  const legs = grid.pairs[pair].join("+");
+  return cell === HOME ? t("legs {legs} to home", { legs })
+    : t("legs {legs} to {cell}", { legs, cell: cellName(grid, cell, " mm") });
+}
 
 /** The column of a move in a table. @type {(move: Move, grid: FootCells) => number} */
 export const columnOf = ([pair, cell], { cell_names }) => pair * cell_names.length + cell;

@@ -123,3 +123,15 @@ def test_a_lesson_that_is_taught_hides_its_question_from_all_but_operators(schoo
     listed = school.teacher.get("/lessons")["items"]
     (entry,) = [item for item in listed if item["id"] == lesson_id]
     assert (entry["minutes"], entry["has_knowledge_question"]) == (20, True)
+
+
+def test_a_lesson_that_is_taught_in_one_language_hides_as_much_in_all(school: Class) -> None:
+    lesson = {"lesson": "legs-and-balance", "language": "de"}
+    room = school.teacher.call("POST", "/rooms", json=lesson).json()
+    assert school.teacher.get(f"/rooms/{room['code']}")["language"] == "de"
+    for language in ("en", "de", "fr"):
+        address = f"/lessons/legs-and-balance?language={language}"
+        assert school.teacher.get(address)["before"] is not None
+        read = school.pupil().get(address)
+        assert read["is_taught"]
+        assert read["before"] is None

@@ -1,16 +1,22 @@
 """Lessons over REST: stored, listed and exported, and what is refused with which sentence."""
 
+import json
+import re
+from collections.abc import Iterator, Set
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from app.features.classroom import lessons
-from app.features.classroom.lesson import MAX_CARDS, html_of, read_lesson
+from app.features.classroom.lesson import MAX_CARDS, html_of, plain, read_lesson
 from app.features.classroom.lesson_file import MAX_BYTES, read_file, write_file
 from app.features.classroom.lesson_sheet import sheet_of
-from app.features.classroom.lessons import built_in
+from app.features.classroom.lessons import built_in, languages
 from app.features.classroom.tables import LESSONS
+from hexapods import assets
+from hexapods.agents.registry import BUILT_IN
 from tests.api.calls import Api, refused
 
 YAML = {"Content-Type": "application/yaml"}
@@ -125,6 +131,64 @@ def test_built_in_lessons_can_be_started_and_exported(api: Api) -> None:
         file = api.call("GET", f"/lessons/{lesson_id}?format=yaml").content
         assert api.call("POST", "/lessons", content=file, headers=YAML).status_code == 201
         refused(api.call("DELETE", f"/lessons/{lesson_id}"), 404, "built in stay")
+
+
+def texts_of(document: Any) -> Iterator[str]:
+    """Yield the texts of a lesson that people read; choices that name agents are none."""
+    if isinstance(document, str):
+        if re.search(r"[^\W\d]{2}|\d\.\d", document) and document not in BUILT_IN:
+            yield document
+    elif isinstance(document, list):
+        for item in document:
+            yield from texts_of(item)
+    elif isinstance(document, dict):
+        for name, value in document.items():
+            if name not in {"language", "state", "show", "may", "go", "teach", "kind"}:
+                yield from texts_of(value)
+
+
+def without_texts(document: Any, texts: Set[str]) -> Any:
+    if isinstance(document, dict):
+        return {
+            name: without_texts(value, texts)
+            for name, value in document.items()
+            if name != "language"
+        }
+    if isinstance(document, list):
+        return [without_texts(item, texts) for item in document]
+    return None if isinstance(document, str) and document in texts else document
+
+
+def test_built_in_lessons_are_in_all_languages_of_the_page() -> None:
+    english = {text for lesson in built_in().values() for text in texts_of(plain(lesson))}
+    of_the_page = sorted(path.stem for path in assets.static_dir().glob("messages/*.json"))
+    assert languages() == ("en", *of_the_page)
+    for language in of_the_page:
+        file = Path(lessons.__file__).with_name("built_in") / f"languages/{language}.json"
+        catalogue = json.loads(file.read_text("utf-8"))
+        assert set(catalogue) == english
+        assert all(catalogue.values())
+        for lesson_id, lesson in built_in(language).items():
+            translated, original = plain(lesson), plain(built_in()[lesson_id])
+            assert lesson.language == language
+            assert without_texts(translated, set(catalogue.values())) == without_texts(
+                original, english
+            )
+
+
+def test_a_built_in_lesson_is_had_in_a_language(api: Api) -> None:
+    lesson_id = "legs-and-balance"
+    address = f"/lessons/{lesson_id}?language=de"
+    lesson = api.get(address)
+    listed = {entry["id"]: entry["title"] for entry in api.get("/lessons?language=de")["items"]}
+
+    assert lesson["language"] == "de"
+    assert lesson["title"] == listed[lesson_id] == "Beine und Gleichgewicht"
+    assert "<em>Stützpolygon</em>" in str(lesson["html"])
+    unknown = "language of the built-in lessons 'xx'; choose one of: en, de, fr"
+    for path in ("/lessons", f"/lessons/{lesson_id}"):
+        refused(api.call("GET", f"{path}?language=xx"), 422, unknown)
+    refused(api.call("POST", "/rooms", json={"lesson": lesson_id, "language": "xx"}), 422, unknown)
 
 
 @pytest.mark.parametrize("form", ["json", "yaml"])
