@@ -90,6 +90,26 @@ export function ticksOf({ along: [from, length], scale }) {
     .filter((y) => y !== 0).map((y) => ({ y, hasNumber: Math.abs(y - FINISH_M) > FREE_M }));
 }
 
+/**
+ * Where names stand so that none is over another: one that would be goes up to a line above that.
+ * @template {{ left: number, right: number, y: number }} Name `y`: of its base line [px, down]
+ * @param {Name[]} names
+ * @param {number} line height of a line [px]
+ * @returns {Name[]}
+ */
+export function apart(names, line) {
+  /** @type {Name[]} */
+  const placed = [];
+  for (const name of names) {
+    let { y } = name;
+    const over = () => placed.find((other) =>
+      other.left < name.right && name.left < other.right && Math.abs(other.y - y) < line);
+    for (let other = over(); other; other = over()) y = other.y - line;
+    placed.push({ ...name, y });
+  }
+  return placed;
+}
+
 /** The text of the label of each robot, by lane, as the messages have it that are drawn. */
 export class LabelTexts {
   constructor() {

@@ -1,7 +1,9 @@
 // The plan of the track from above: robots as links tell of them, all in the picture, and their labels.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { bodiesOf, FINISH_M, laneWidth, LabelTexts, pathOf, placeOf, ticksOf, viewOf } from "../../static/js/plan.js";
+import {
+  apart, bodiesOf, FINISH_M, laneWidth, LabelTexts, pathOf, placeOf, ticksOf, viewOf,
+} from "../../static/js/plan.js";
 
 /** Links of a robot with six legs at a place: each has a hip, a knee and a foot. */
 /** @type {(lane: number, x: number, y: number) => import("../../static/js/plan.js").Link[]} */
@@ -92,4 +94,10 @@ test("labels are those of the messages, until their node is removed", () => {
   assert.deepEqual(labels.of(1), ["1. Greedy"]);
   labels.take({ type: "RemoveSceneNodeMessage", name: "/world" });
   assert.deepEqual(labels.of(1), [""]);
+});
+
+test("names that would be over another go up a line, and others stay", () => {
+  const names = [[0, 60, 50], [40, 90, 52], [80, 120, 50], [30, 70, 49], [0, 60, 90]]
+    .map(([left, right, y]) => ({ left, right, y }));
+  assert.deepEqual(apart(names, 15).map(({ y }) => y), [50, 35, 50, 20, 90]);
 });

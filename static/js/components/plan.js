@@ -2,17 +2,22 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { fixed, metres, t } from "../format.js";
 import { drawHere } from "../page.js";
-import { bodiesOf, FINISH_M, LabelTexts, laneWidth, pathOf, placeOf, ticksOf, viewOf } from "../plan.js";
+import { apart, bodiesOf, FINISH_M, LabelTexts, laneWidth, pathOf, placeOf, ticksOf, viewOf } from "../plan.js";
 import { drawIn } from "../player.js";
 import { scene } from "../store.js";
 import { html } from "./elements.js";
+import { widthOf } from "./line-labels.js";
 
 /** @import { Body, Link, View } from "../plan.js" */
 /** @import { Message } from "../replay-frames.js" */
 
 const FOOT_PX = 2.5;
-/** What stays free at the top and the bottom for the names of robots, and at the sides of a name. */
-const [FREE_PX, SIDE_PX] = [22, 60];
+/** What stays free at the top and the bottom for the names of robots. */
+const FREE_PX = 22;
+/** Around a name; between a name and the feet below it; the size of type that `widthOf` measures. */
+const [SIDE_PX, FEET_PX, MEASURED_PX] = [6, 8, 12];
+/** What a number takes beside the lanes; where less is free it stands in the first. */
+const NUMBER_PX = 34;
 /** A lane that is narrower has no room for the distance beside the name. */
 const WIDE_PX = 150;
 
@@ -29,11 +34,13 @@ const links = () => /** @type {any} */ (globalThis).hexapodsViewer.robots.links(
  */
 export function Plan({ isLost = false, retry, names = [] }) {
   const host = useRef(/** @type {HTMLElement | null} */ (null));
-  const [size, setSize] = useState({ width: 0, height: 0 });
+  const [size, setSize] = useState({ width: 0, height: 0, type: 0 });
   const [shown, setShown] = useState({ bodies: /** @type {Body[]} */ ([]), labels: new LabelTexts() });
   useEffect(() => {
     const element = /** @type {HTMLElement} */ (host.current);
-    const measure = () => setSize({ width: element.clientWidth, height: element.clientHeight });
+    const measure = () => setSize({
+      width: element.clientWidth, height: element.clientHeight, type: parseFloat(getComputedStyle(element).fontSize),
+    });
     const observer = new ResizeObserver(measure);
     observer.observe(element);
     measure();
@@ -83,24 +90,63 @@ const titlesOf = (bodies, labels, names) => bodies.map(({ lane }) => {
 
 /** @typedef {{ name: string, distance: string, color: string }} Title */
 
-/** @param {{ bodies: Body[], size: { width: number, height: number }, titles: Title[] }} props */
-function Track({ bodies, size: { width, height }, titles }) {
+/** Where a name is [px], and the distance beside it. */
+/** @typedef {{ left: number, right: number, y: number, distance: string }} NamePlace */
+/** Of the part that is drawn, and of its type [px]. @typedef {{ width: number, height: number, type: number }} Size */
+
+/** @param {{ bodies: Body[], size: Size, titles: Title[] }} props */
+function Track({ bodies, size, titles }) {
   if (bodies.length === 0) return null;
-  const view = viewOf(bodies, { width, height: Math.max(1, height - 2 * FREE_PX) }, scene.value?.kind === "training");
+  const { view, names, top } = layOut(bodies, size, titles);
   const words = titles.map(({ name, distance }) => `${name} ${distance}`.trim()).join("; ");
   return html`
-    <svg role="img" aria-label=${t("Plan of the track from above. {words}", { words })} width=${width} height=${height}>
-      <g transform=${`translate(0 ${FREE_PX})`}>
-        <${Ground} bodies=${bodies} titles=${titles} view=${view} />
-        ${bodies.map((body, n) => html`<${Robot} key=${body.lane} body=${body} title=${titles[n]} view=${view} />`)}
+    <svg role="img" aria-label=${t("Plan of the track from above. {words}", { words })}
+      width=${size.width} height=${size.height}>
+      <g transform=${`translate(0 ${top})`}>
+        <${Ground} bodies=${bodies} titles=${titles} view=${view}
+          edge=${Math.min(...names.map(({ left: at }) => at))} />
+        ${bodies.map((body, n) => html`
+          <${Robot} key=${body.lane} body=${body} color=${titles[n].color} view=${view} />
+        `)}
+        ${names.map((name, n) => html`<${Name} key=${bodies[n].lane} name=${name} title=${titles[n]} />`)}
       </g>
     </svg>
   `;
 }
 
-/** The lanes with marks of distance, the start and the finish line. */
-/** @param {{ bodies: Body[], titles: Title[], view: View }} props */
-function Ground({ bodies, titles, view }) {
+/**
+ * What of the track is drawn, how far below the top it begins, and where the robots' names are.
+ * @param {Body[]} bodies
+ * @param {Size} size
+ * @param {Title[]} titles
+ * @param {number} [lines] how many more than the first are free at the top
+ * @returns {{ view: View, names: NamePlace[], top: number }}
+ */
+function layOut(bodies, { width, height, type }, titles, lines = 0) {
+  const line = 1.25 * type;
+  const top = FREE_PX + lines * line;
+  const room = { width, height: Math.max(1, height - top - FREE_PX) };
+  const view = viewOf(bodies, room, scene.value?.kind === "training");
+  const hasDistance = !view.isUpright || laneWidth(bodies) * view.scale >= WIDE_PX;
+  const names = apart(bodies.map(({ at, legs }, n) => {
+    const { name, distance } = titles[n];
+    const shown = hasDistance ? distance : "";
+    const size = widthOf(`${name} ${shown}`, 650) * (type / MEASURED_PX);
+    const [x] = placeOf(view, at);
+    const left = Math.max(SIDE_PX, Math.min(x - size / 2, width - SIDE_PX - size));
+    const y = Math.min(...legs.map((leg) => placeOf(view, leg[leg.length - 1])[1])) - FEET_PX;
+    return { left, right: left + size + SIDE_PX, y, distance: shown };
+  }), line);
+  // Those that others have pushed up need another line at the top.
+  const isCut = names.some(({ y }) => y - type < -top) && lines < bodies.length;
+  return isCut ? layOut(bodies, { width, height, type }, titles, lines + 1) : { view, names, top };
+}
+
+/**
+ * The lanes with marks of distance, the start and the finish line; `edge` is where the first name begins [px].
+ * @param {{ bodies: Body[], titles: Title[], view: View, edge: number }} props
+ */
+function Ground({ bodies, titles, view, edge }) {
   const half = laneWidth(bodies) / 2;
   const xs = bodies.map(({ at }) => at[0]);
   const [left, right] = [Math.min(...xs) - half, Math.max(...xs) + half];
@@ -108,10 +154,10 @@ function Ground({ bodies, titles, view }) {
   const line = (/** @type {number} */ y) => `M${pathOf(view, [[left, y, 0], [right, y, 0]])}`;
   const mark = (/** @type {number} */ y, /** @type {string} */ words) => {
     const [x_px, y_px] = placeOf(view, [isUpright ? left : right, y]);
-    return html`
-      <text class="number" x=${x_px + (isUpright ? 4 : 0)} y=${y_px - 4}
-        text-anchor=${isUpright ? "start" : "middle"}>${words}</text>
-    `;
+    if (!isUpright) return html`<text class="number" x=${x_px} y=${y_px - 4} text-anchor="middle">${words}</text>`;
+    const outside = Math.min(x_px, edge) - SIDE_PX;
+    return outside < NUMBER_PX ? html`<text class="number" x=${x_px + 4} y=${y_px - 4}>${words}</text>`
+      : html`<text class="number" x=${outside} y=${y_px + 4} text-anchor="end">${words}</text>`;
   };
   return html`
     ${xs.map((x, n) => html`
@@ -127,22 +173,21 @@ function Ground({ bodies, titles, view }) {
   `;
 }
 
-/** @param {{ body: Body, title: Title, view: View }} props */
-function Robot({ body: { at, legs }, title: { name, distance, color }, view }) {
+/** @param {{ body: Body, color: string, view: View }} props */
+function Robot({ body: { legs }, color, view }) {
   const feet = legs.map((leg) => placeOf(view, leg[leg.length - 1]));
-  const [x] = placeOf(view, at);
-  const width = view.scale * (view.isUpright ? view.across : view.along)[1];
-  const hasRoom = !view.isUpright || laneWidth([{ lane: 0, at, legs }]) * view.scale >= WIDE_PX;
-  const anchor = x < SIDE_PX ? "start" : x > width - SIDE_PX ? "end" : "middle";
   return html`
     <g class="robot" style=${{ color }}>
       <path class="limb" d=${legs.map((leg) => `M${pathOf(view, leg)}`).join("")} />
       <path class="torso" d=${`M${pathOf(view, legs.map(([hip]) => hip))}Z`} />
       ${feet.map(([cx, cy]) => html`<circle class="foot" cx=${cx} cy=${cy} r=${FOOT_PX} />`)}
-      <text class="name" x=${{ start: 6, middle: x, end: width - 6 }[anchor]} text-anchor=${anchor}
-        y=${Math.min(...feet.map(([, y]) => y)) - 8}>
-        ${name}${distance && hasRoom && html`<tspan class="distance" dx="0.5em">${distance}</tspan>`}
-      </text>
     </g>
   `;
 }
+
+/** @param {{ name: NamePlace, title: Title }} props */
+const Name = ({ name: { left, y, distance }, title }) => html`
+  <text class="name" x=${left} y=${y}>
+    ${title.name}${distance && html`<tspan class="distance" dx="0.5em">${distance}</tspan>`}
+  </text>
+`;
