@@ -124,9 +124,18 @@ const Tabs = () => html`
 /** @param {{ name: string }} props */
 function Tab({ name }) {
   const isOpen = tab.value === name;
+  const button = useRef(/** @type {HTMLElement | null} */ (null));
+  // A row that is wider than the panel scrolls, and nothing around it.
+  useEffect(() => {
+    const row = button.current?.parentElement;
+    if (!isOpen || !button.current || !row) return;
+    const { offsetLeft, offsetWidth } = button.current;
+    row.scrollLeft = Math.max(offsetLeft + offsetWidth - row.clientWidth, Math.min(row.scrollLeft, offsetLeft));
+  }, [isOpen]);
   return html`
-    <button id=${`tab-${name}`} role="tab" aria-selected=${isOpen ? "true" : "false"} tabindex=${isOpen ? "0" : "-1"}
-      aria-controls=${isOpen ? "panel-body" : undefined} title=${tabAbout(name)} onClick=${() => openTab(name)}>
+    <button ref=${button} id=${`tab-${name}`} role="tab" aria-selected=${isOpen ? "true" : "false"}
+      tabindex=${isOpen ? "0" : "-1"} aria-controls=${isOpen ? "panel-body" : undefined} title=${tabAbout(name)}
+      onClick=${() => openTab(name)}>
       ${tabTitle(name)}
     </button>
   `;
