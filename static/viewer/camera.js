@@ -27,7 +27,7 @@
   let covered = [];
   /** What the shot is of, as a text; another one begins another shot. */
   let key = "";
-  /** Names the robots: others are cut to. */
+  /** Names the robots: others are cut to, and so are the first. */
   let cast = "";
   /** Whether the camera is the page's to move. */
   let isDirected = false;
@@ -141,12 +141,12 @@
     flight.elapsed_s += elapsed_s;
     const direction = directionNow();
     const points = pointsOf(list);
-    const found = solved(points, list, direction, picture);
+    const goal = solved(points, list, direction, picture);
     const isAt = view === null;
     const isFlying = flight.elapsed_s < FLIGHT_S;
-    if (isAt) view = { ...found, direction, speeds: [0, 0, 0, 0] };
-    else if (stillness.matches) cutWhereNeeded(points, found, direction, picture);
-    else follow(found, elapsed_s);
+    if (isAt) view = { ...goal, direction, speeds: [0, 0, 0, 0] };
+    else if (stillness.matches) cutWhereNeeded(points, goal, direction, picture);
+    else follow(goal, elapsed_s);
     view.direction = direction;
     // No robot is cut, however fast it walks; a flight comes to that by and by.
     const least = shots.distanceFor(points, direction, hardTangents(direction, picture), view.target);
@@ -236,7 +236,7 @@
     if (nextKey !== key || !isDirected) {
       const [before, after] = [JSON.parse(key || "[{}]")[0].shot, wanted.shot];
       const isCut = nextCast !== cast || (isDirected && isCutTo(before, after));
-      begin(list, isCut || !isShown());
+      begin(list, isCut);
       [key, cast, isDirected] = [nextKey, nextCast, true];
     }
     direct(list, picture, elapsed_s);
@@ -244,14 +244,6 @@
     if (text === placed) return;
     placed = text;
     viewer().requestRender?.();
-  };
-
-  let hasShown = false;
-  /** Whether there was a shot before: the first is not flown to. */
-  const isShown = () => {
-    const before = hasShown;
-    hasShown = true;
-    return before;
   };
 
   const rounded = (part) => (typeof part === "number" ? Math.round(part / MOVED_M)

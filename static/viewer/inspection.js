@@ -162,10 +162,10 @@
     return { of: inspection.of, points, azimuth_deg: (azimuth() * 180) / Math.PI };
   };
 
-  const isSame = (one, other) => one?.of === other.of && one.points.length === other.points.length
-    && one.points.every((point, n) => {
-      const now = other.points[n];
-      return point && now ? Math.abs(point.x - now.x) + Math.abs(point.y - now.y) < SAME_PX : point === now;
+  const isSame = (earlier, now) => earlier?.of === now.of && earlier.points.length === now.points.length
+    && earlier.points.every((point, n) => {
+      const next = now.points[n];
+      return point && next ? Math.abs(point.x - next.x) + Math.abs(point.y - next.y) < SAME_PX : point === next;
     });
 
   const tellPlaces = () => {
