@@ -34,10 +34,6 @@ def test_the_player_and_its_imports_are_those_of_the_page() -> None:
 
     assert set(modules) == {f"js/offline/{name}" for name in own} | {
         "js/replay-frames.js",
-        "js/format.js",
-        "js/server-sentences.js",
-        "js/translation.js",
-        "vendor/htm.js",
     }
     for name, text in modules.items():
         path = assets.static_dir() / name

@@ -1,4 +1,5 @@
 // Texts, numbers, times and lists for people, in the language that the page's HTML says.
+import { SAME_MOMENT_S } from "./replay-frames.js";
 
 /** @import { Translation } from "./translation.js" */
 
@@ -133,12 +134,6 @@ export function duration(seconds) {
   if (minutes < 90) return `${minutes} min`;
   return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
-
-/**
- * Times of a run that differ by no more are one moment, as on the server (hexapods/runs/clocks.py): it tells
- * milliseconds, and sums of steps' durations differ in their last bits. A step lasts longer.
- */
-export const SAME_MOMENT_S = 0.001;
 
 /** An estimated duration: "about 4 s", "under 1 s". @param {number} seconds */
 export const aboutDuration = (seconds) =>

@@ -3,13 +3,13 @@
 // where it is held, is of the page's state.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, isLasting } from "./api.js";
-import { SAME_MOMENT_S, t } from "./format.js";
+import { t } from "./format.js";
 import { sceneOf } from "./narrative/moment.js";
 import { change, page } from "./page-state.js";
 import { isStill } from "./page.js";
 import { drawWith, Picture, requestOf } from "./picture.js";
 import {
-  approached, endOf, inRecording, momentOf, nextStep, stepsUntil, timeOutOf, unpack,
+  approached, endOf, inRecording, momentOf, nextStep, SAME_MOMENT_S, stepsUntil, timeOutOf, unpack,
 } from "./replay-frames.js";
 import { connection, isAway, isGone, newestPiece, playhead, scene, serverClock, stage } from "./store.js";
 

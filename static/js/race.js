@@ -1,9 +1,9 @@
 // The race in view at the moment that is shown: its timeline and its standings.
 import { computed, signal } from "@preact/signals";
 import { askForNewest, getTimeline, isLasting } from "./api.js";
-import { SAME_MOMENT_S } from "./format.js";
 import { clock, originalRace, raceInView, raceScene } from "./on-stage.js";
 import { distanceAt, distanceOf, isTimedOutIn, rowsOf } from "./narrative/moment.js";
+import { SAME_MOMENT_S } from "./replay-frames.js";
 import { modelOfLane } from "./selectors.js";
 import { learns } from "./settings.js";
 import { connection, options } from "./store.js";

@@ -1,8 +1,6 @@
 // Frames of a run: decodes them, and tells what to send to the 3D view to be at one of them.
 // Their encoder: hexapods/drawing/replay_encoding.py.
 
-import { SAME_MOMENT_S } from "./format.js";
-
 /** @import { Playhead, ReplayPlan } from "./types.js" */
 
 /** A message of viser. @typedef {Record<string, any> & { type: string }} Message */
@@ -16,6 +14,11 @@ const ARRAYS = {
   "<f4": Float32Array, "<f8": Float64Array, "|u1": Uint8Array, "<u2": Uint16Array, "<u4": Uint32Array,
   "|i1": Int8Array, "<i2": Int16Array, "<i4": Int32Array,
 };
+/**
+ * Times of a run that differ by no more are one moment, as on the server (hexapods/runs/clocks.py): it tells
+ * milliseconds, and sums of steps' durations differ in their last bits. A step lasts longer.
+ */
+export const SAME_MOMENT_S = 0.001;
 /** Time constant with which the leader is followed, [s]. */
 const SMOOTHING_S = 0.25;
 /** Of so many frames at once only the last is shown. */

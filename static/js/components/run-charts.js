@@ -2,9 +2,10 @@
 // distance in an evaluation against steps of practice.
 import { seekIn } from "../actions.js";
 import { inTime, inWords } from "../disturbances.js";
-import { count, fixed, metres, SAME_MOMENT_S, t } from "../format.js";
+import { count, fixed, metres, t } from "../format.js";
 import { distanceAt } from "../narrative/moment.js";
 import { raceInView, shownRun } from "../on-stage.js";
+import { SAME_MOMENT_S } from "../replay-frames.js";
 import { clipped, shownTime, timeline, timelineProblem } from "../race.js";
 import { largest, ticks } from "../scale.js";
 import { agentOf, laneTitle } from "../settings.js";

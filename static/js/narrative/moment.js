@@ -2,7 +2,8 @@
 // signals: they make every sentence about a run and its moment from plain data, as `narrative.js` has it in a table.
 // What is said is decided by numbers of steps; where only times are known, those that differ by at most SAME_MOMENT_S
 // are the same.
-import { SAME_MOMENT_S, t } from "../format.js";
+import { t } from "../format.js";
+import { SAME_MOMENT_S } from "../replay-frames.js";
 
 /** @import { ClockResult, Clock, LaneConfig, LaneResult, Playback, Run, Scene, SceneLane } from "../types.js" */
 /** @import { Timeline, TimelineLane } from "../types.js" */

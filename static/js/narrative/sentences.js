@@ -1,7 +1,8 @@
 // The sentences about a race and a practice: who leads or has won, by which rule and why; what a practice has come to.
 import {
-  decimal, distanceApart, fixed, inMillimetres, listed, metres, percentage, SAME_MOMENT_S, t,
+  decimal, distanceApart, fixed, inMillimetres, listed, metres, percentage, t,
 } from "../format.js";
+import { SAME_MOMENT_S } from "../replay-frames.js";
 import { distanceOf, earlyEndOf, isActive, LEVEL_M, madeAt, stepEnds, timeSpent } from "./moment.js";
 
 /** @import { CurvePoint } from "../training.js" */
