@@ -1,6 +1,6 @@
 // In place of the actions in a presenter's window: by what a race is ranked and timed, and how long it still takes.
 import { html } from "../../js/components/elements.js";
-import { sentence } from "../../js/format.js";
+import { fixed, sentence } from "../../js/format.js";
 import { narrative } from "../../js/headline.js";
 import { clock, isStale } from "../../js/on-stage.js";
 import { isTimedOut } from "../../js/race.js";
@@ -20,7 +20,7 @@ export function Facts() {
         <dd>${sentence(clockTitle(clock.value))}. Bar: distance. Thin: time, hatched while thinking.</dd>
       </div>
       ${left !== null && html`
-        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
+        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${fixed(left, 1)} s`}</dd></div>
       `}
     </dl>
   `;

@@ -1,5 +1,6 @@
 // Charts beside the dots of a class: the distances by the setting that each robot was given.
 import { html } from "../../../../js/components/elements.js";
+import { decimal } from "../../../../js/format.js";
 import { settingInWords } from "../allowed-settings.js";
 import { besideEachOther, plotAxis } from "./plot-geometry.js";
 import { AxisNumbers, useBox } from "./plot.js";
@@ -45,7 +46,7 @@ function Chart({ ofSetting: { name, points, values }, card }) {
             ${ys.marks.map((y) => html`
               <line class="plot-grid" x1="0" x2=${inner} y1=${down(y)} y2=${down(y)} />
               <text class="plot-number" x=${-0.4 * em} y=${down(y) + 0.3 * em} text-anchor="end">
-                ${Number(y.toFixed(2))}</text>
+                ${decimal(Number(y.toFixed(2)))}</text>
             `)}
             ${dots.map(({ x, y }) => html`<circle class="set-to" cx=${x} cy=${y} r=${DOT_EM * em} />`)}
             <${AxisNumbers} axis=${xs} format=${format} width=${inner} y=${deep} em=${em} />

@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { getCurves } from "../../../../js/api.js";
 import { html } from "../../../../js/components/elements.js";
-import { count, metres, whole } from "../../../../js/format.js";
+import { count, decimal, metres, whole } from "../../../../js/format.js";
 import { stepsOf } from "../chart.js";
 import { meanCurve } from "./mean-curve.js";
 import { plotAxis } from "./plot-geometry.js";
@@ -60,7 +60,7 @@ function Reveal({ classroom, results }) {
             ${ys.marks.map((y) => html`
               <line class="plot-grid" x1="0" x2=${inner} y1=${placed([0, y])[1]} y2=${placed([0, y])[1]} />
               <text class="plot-number" x=${-0.4 * em} y=${Math.max(0.7 * em, placed([0, y])[1] + 0.3 * em)}
-                text-anchor="end">${Number(y.toFixed(2))}</text>
+                text-anchor="end">${decimal(Number(y.toFixed(2)))}</text>
             `)}
             ${curves.map((curve) => html`<path class="learned" d=${path(curve)} />`)}
             ${!isPoint && predicted.map((curve) => html`<path class="drawn" d=${path(curve)} />`)}

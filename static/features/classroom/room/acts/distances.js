@@ -1,6 +1,6 @@
 // How far the robots of a class walked, each a dot: all that is revealed of a card that asks nothing.
 import { html } from "../../../../js/components/elements.js";
-import { count, metres } from "../../../../js/format.js";
+import { count, fixed, metres } from "../../../../js/format.js";
 import { BySetting } from "./by-setting.js";
 import { DotPlot } from "./plot.js";
 
@@ -18,7 +18,7 @@ export function walkedRow(classroom, results) {
   const { distances_m = [], interval = null } = results ?? {};
   if (distances_m.length === 0) return null;
   const range = interval && interval.low_m !== null
-    ? ` (95\u00a0%: ${interval.low_m.toFixed(2)} to ${metres(interval.high_m)})` : "";
+    ? ` (95\u00a0%: ${fixed(interval.low_m, 2)} to ${metres(interval.high_m)})` : "";
   return {
     title: `${dotsInWords(classroom, distances_m.length)}, typically ${metres(interval?.iqm_m)}${range}`,
     kind: "walked",
