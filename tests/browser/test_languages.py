@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, Route, expect
 
+from app.api.pages import languages_of
 from hexapods import assets
 from tests.browser.rooms import TOKEN, phone
 from tests.browser.serving import Serving, finished, hold, serving
@@ -57,6 +58,14 @@ _TEXTS = """() => {
     return texts;
 }"""
 
+
+_CUT_TABS = """row => {
+    const {left, right} = row.getBoundingClientRect();
+    return [...row.children].filter(tab => {
+        const box = tab.getBoundingClientRect();
+        return box.left < left - 0.5 || box.right > right + 0.5;
+    }).map(tab => tab.textContent);
+}"""
 
 _FULL_WIDTH = {ord(letter): ord(letter) + 0xFEE0 for letter in string.ascii_letters}
 
@@ -145,3 +154,18 @@ def test_all_of_a_phone_is_in_the_language_of_the_link(
         expect(prediction).to_have_count(0)
         texts["locked"] = untranslated(page, names)
         assert {moment: words for moment, words in texts.items() if words} == {}
+
+
+def test_all_tabs_of_study_are_in_view_in_each_language(
+    flat_browser: Browser, server: Serving
+) -> None:
+    cut = dict[str, list[str]]()
+    with new_page(flat_browser) as page:
+        for code in languages_of(assets.static_dir()):
+            page.goto(f"{server.address}?depth=study&lang={code}")
+            tabs = page.get_by_role("tab")
+            expect(tabs).to_have_count(7)
+            for width in (1280, 1440, 1920):
+                page.set_viewport_size({"width": width, "height": 900})
+                cut[f"{code} at {width}"] = page.get_by_role("tablist").evaluate(_CUT_TABS)
+    assert {where: titles for where, titles in cut.items() if titles} == {}
