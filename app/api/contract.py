@@ -18,7 +18,7 @@ from app.api.identity import IdentityProvider
 from app.api.policy import Access, RoutePolicy, policies
 from app.api.problem_types import FOLDER, TYPES
 from app.api.problems import MEDIA_TYPE
-from app.api.shared_schemas import name_schemas, share, shared_schemas
+from app.api.shared_schemas import name_body, name_schemas, share, shared_schemas
 from app.feature import Feature
 from app.settings import Settings
 
@@ -201,6 +201,7 @@ def _completed(
         statuses = sorted({*problems_of(operation, of_route), *map(int, extra)})
         problems = {str(s): {"$ref": f"#/components/responses/{_PROBLEMS[s][0]}"} for s in statuses}
         operation["responses"] = successes | problems
+        name_body(operation)
     _link_runs(schema)
     share(schema, shared_schemas())
     name_schemas(schemas)

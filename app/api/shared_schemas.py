@@ -19,9 +19,13 @@ from hexapods.domain.disturbance_documents import any_kind_schema, json_schema
 from hexapods.domain.disturbances import KINDS
 from hexapods.domain.gait import GAIT_SCHEMA, AnyGait
 from hexapods.domain.robot import LEG_SCHEMA, ROBOT_SCHEMA, STORED_ROBOT_SCHEMA, AnyRobot
+from hexapods.domain.settings import Value
 
 Schema = dict[str, Any]
 
+_VALUE = TypeAdapter(Value).json_schema()
+_VALUE_TYPES = {"type": ["number", "string", "boolean", "null"]}
+"""What `_VALUE` says in alternatives, among them null, which OpenAPI Generator does not read."""
 
 _DESCRIPTIONS: Mapping[str, Schema] = {
     "AnyGait": {"description": VALID["gait"]},
@@ -56,7 +60,8 @@ def _described(kind: Any, mode: JsonSchemaMode = "validation") -> Schema:
 def share(document: Schema, shared: Mapping[str, Schema]) -> None:
     """Replace each schema that is a shared one by a reference to a component with that.
 
-    What a field has beside it, such as a title and a default, stays there.
+    What a field has beside it, such as a title and a default, stays there. The value of a setting
+    is described by the list of its types, where it stands.
 
     Args:
         document: the OpenAPI document, which is changed.
@@ -77,6 +82,8 @@ def _with_references(part: Any, shared: Mapping[str, Schema]) -> Any:
         return [_with_references(item, shared) for item in part]
     if not isinstance(part, dict):
         return part
+    if part.items() >= _VALUE.items():
+        return _VALUE_TYPES | {key: value for key, value in part.items() if key not in _VALUE}
     for name, schema in shared.items():
         reference = {"$ref": f"#/components/schemas/{name}"}
         if part.items() >= schema.items():
@@ -105,3 +112,10 @@ def name_schemas(schemas: dict[str, Schema]) -> None:
     for name, schema in schemas.items():
         if titles.count(schema.get("title")) > 1 or "title" not in schema:
             schema["title"] = name.replace("-", "")
+
+
+def name_body(operation: Schema) -> None:
+    """Make the title of a request's body that is no component one that no other has."""
+    for form in operation.get("requestBody", {}).get("content", {}).values():
+        if form["schema"].get("title") == "Body":
+            form["schema"]["title"] = f"{camel_case(operation['operationId'])}Body"
