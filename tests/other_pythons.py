@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tests.digests import ROOT
 
-CHECKED = (3, 13)
+CHECKED = (3, 14)
 """The newest Python for which the locks have to install."""
 _ENVIRONMENTS = ROOT / "build" / "pythons"
 _TOOLS = ("iniconfig", "pytest", "pytest-timeout")

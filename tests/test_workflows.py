@@ -7,11 +7,14 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests.other_pythons import CHECKED
 
 ROOT = Path(__file__).parent.parent
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
@@ -122,3 +125,14 @@ def test_hooks_of_commits_and_the_development_container_use_what_make_installs()
     container = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text("utf-8"))
     targets = container["postCreateCommand"].removeprefix("make ").split()
     assert set(targets) <= MAKE_TARGETS
+
+
+def test_the_checks_run_with_each_python_that_the_package_names() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    prefix = "Programming Language :: Python :: 3."
+    named = [text for text in project["classifiers"] if text.startswith(prefix)]
+    [checks] = [loaded(path) for path in WORKFLOWS if path.name == "checks.yml"]
+    pythons = checks["jobs"]["pythons"]["strategy"]["matrix"]["python"]
+    assert [f"{prefix}{python.removeprefix('3.')}" for python in pythons] == named
+    assert project["requires-python"] == f">={pythons[0]}"
+    assert tuple(map(int, pythons[-1].split("."))) == CHECKED
