@@ -13,6 +13,7 @@ export const WATCH = [
     "run-charts", "run-notices", "stage", "stage-notes", "time-bar", "work-buttons"]
     .map((name) => `static/js/components/${name}.js`),
   "static/features/classroom/feature.js", "static/features/classroom/first-lesson.js",
+  "static/features/classroom/linked-lesson.js", "static/features/classroom/components/lesson-reader.js",
   ...["explanation", "loss", "navigator", "why"].map((name) => `static/features/explanations/components/${name}.js`),
   "static/features/explanations/steps.js", "static/features/guide/reading.js",
   "static/features/run_code/citation.js",

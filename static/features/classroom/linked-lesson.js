@@ -59,5 +59,7 @@ const turnCard = () => (cardNumber.peek() === total.peek() ? leave() : openCard(
 export const Buttons = () => html`
   <button class="secondary compact" onClick=${() => (readerIsOpen.value = true)}>Read</button>
   <${LessonReader} />
-  <button class="secondary compact" onClick=${turnCard}>${cardNumber.value === total.value ? "Done" : "Next"}</button>
+  <button class="secondary compact" onClick=${turnCard}>
+    ${cardNumber.value === total.value ? t("Done") : t("Next")}
+  </button>
 `;

@@ -4,6 +4,7 @@ import { cardNumber } from "../feature.js";
 import { linked, linkedCard } from "../lesson.js";
 import { readerIsOpen } from "../linked-lesson.js";
 import { Answer, draftOf } from "../room/questions.js";
+import { t } from "../../../js/format.js";
 import { Dialog, html } from "../../../js/components/elements.js";
 import { Prose } from "./prose.js";
 
@@ -22,7 +23,7 @@ export function LessonReader() {
     <${Dialog} isOpen=${readerIsOpen} id="lesson-reader" labelledBy="reader-title" style="reader">
       <p class="dim">${linked.value?.title} · card ${number + 1} of ${linked.value?.cards.length}</p>
       <${About} lesson=${linked.value} number=${number} />
-      <h2 id="reader-title">${card.title ?? `Card ${number + 1}`}</h2>
+      <h2 id="reader-title">${card.title ?? t("Card {number}", { number: number + 1 })}</h2>
       <${Prose} text=${texts.text} />
       ${card.ask && html`
         <section class="question" aria-label="Question">
@@ -50,7 +51,9 @@ export function LessonReader() {
 /** @param {{ lesson: LessonView, number: number }} props */
 const About = ({ lesson: { minutes, ages, aims }, number }) => number === 0 && html`
   ${(minutes || ages) && html`
-    <p class="dim">${[minutes && `${minutes}\u00a0minutes`, ages].filter(Boolean).join(" · ")}</p>
+    <p class="dim">
+      ${[minutes && t("{minutes}\u00a0{minutes|minute|minutes}", { minutes }), ages].filter(Boolean).join(" · ")}
+    </p>
   `}
   ${aims.length > 0 && html`<ul class="aims">${aims.map((aim) => html`<li key=${aim}>${aim}</li>`)}</ul>`}
 `;
