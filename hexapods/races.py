@@ -304,20 +304,8 @@ def race(
     check_callable("on_step", on_step)
     if isinstance(lanes, str | Lane | Training | Policy) or not isinstance(lanes, Iterable):
         raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
-    numbers = plain({"steps": steps, "seed": seed})
     built = [entrant if isinstance(entrant, Lane) else lane(entrant) for entrant in lanes]
-    like = next(
-        (built_lane.training.config for built_lane in built if built_lane.training is not None),
-        None,
-    )
-    config = check_savable(
-        RaceConfig(
-            **read_walk(plain(walk), like),
-            lanes=tuple(built_lane.config for built_lane in built),
-            **numbers,
-        )
-    )
-    check_ends(config.world.disturbances, config.steps)
+    config = config_of(built, {"steps": steps, "seed": seed, **walk})
     tables = [
         None if built_lane.training is None else built_lane.training.table for built_lane in built
     ]
@@ -337,6 +325,22 @@ def race(
         if on_step is not None:
             on_step()
     return Race(config, recording, race_result(recording, config))
+
+
+def config_of(lanes: Sequence[Lane], numbers_and_walk: Mapping[str, Any]) -> RaceConfig:
+    """Return the config of a race; what is not given is of its first training, or the default.
+
+    Raises:
+        UnknownName, InvalidInput: if a value is not valid; the message names what is.
+    """
+    values = plain(numbers_and_walk)
+    walk = {name: value for name, value in values.items() if name in WALK}
+    numbers = {name: value for name, value in values.items() if name not in WALK}
+    like = next((lane.training.config for lane in lanes if lane.training is not None), None)
+    configs = tuple(lane.config for lane in lanes)
+    config = check_savable(RaceConfig(**read_walk(walk, like), lanes=configs, **numbers))
+    check_ends(config.world.disturbances, config.steps)
+    return config
 
 
 def load(path: str | os.PathLike[str]) -> Training | Race:

@@ -9,8 +9,8 @@ measurements in `benchmarks`).
 Features add commands of their own, and verbs and verifiers of these (`commands`).
 Shared: `options` (options and readers of their values), `setting_options` (options of declared
 settings and of agents), `files` (files that users name), `stored_runs` (runs of a data folder),
-`run_keeper` (computes runs that stay there), `configuration` (options of a file and of the
-environment), `robot_names` (stored robots by name), `server_client`
+`kept_runs` (trainings and races that stay there, which a `run_keeper` computes), `configuration`
+(options of a file and of the environment), `robot_names` (stored robots by name), `server_client`
 (requests to a running server), `terminal` (progress bars and tables), `exit_codes`.
 """
 

@@ -2,14 +2,16 @@
 
 import json
 import re
-from typing import Annotated, Any
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, NamedTuple
 
 from cyclopts import Parameter
 
 from app.cli.exit_codes import FAILED
-from app.cli.options import WALKING_PROBLEM, AsJson, Gait, WalkOptions, read_gait
+from app.cli.options import WALKING_PROBLEM, AsJson, Data, Gait, KeepOptions, WalkOptions, read_gait
 from app.cli.setting_options import DeclaredOptions
 from app.cli.terminal import progress, show_lanes
+from app.settings import Settings, read_settings
 from hexapods import races
 from hexapods.agents.registry import keeps_learning, needs_practice
 from hexapods.domain.errors import InvalidInput, UnknownName
@@ -29,6 +31,7 @@ _SETTING = re.compile(r",\s*([^\W\d]\w*)=")
 """A setting in a lane, `,name=`; its value ends before the next."""
 _DECLARED = declared_fields(RaceConfig)
 _WALK = WalkOptions()
+_NOT_KEPT = KeepOptions()
 
 
 def race(
@@ -47,6 +50,8 @@ def race(
         ),
     ],
     clock: Clock = "paper",
+    keeping: KeepOptions = _NOT_KEPT,
+    data: Data = None,
     as_json: AsJson = False,
     **settings: Annotated[
         Any,
@@ -56,7 +61,7 @@ def race(
 ) -> int:
     """Race agents side by side, timed under three clocks.
 
-    The exit code is 1 if a lane failed.
+    Exit code 1: a lane failed. Exit code 130: Ctrl-C.
 
     Args:
         observation: how the agents of lanes read the state that have no table and say nothing
@@ -66,32 +71,70 @@ def race(
     Raises:
         HexapodError: if the options are not valid.
     """
-    lanes = [_lane(text, observation) for text in lane]
+    keeping.check()
+    entrants = [_lane(text, observation) for text in lane]
+    options = {"gait": read_gait(gait), **walk.fields(), **settings}
+    if keeping.keep:
+        kept_in = read_settings(data=data)
+        return _keep(entrants, options, kept_in, clock, name=keeping.name, as_json=as_json)
     with progress() as bar:
         steps = settings.get("steps", _DECLARED["steps"].default)
-        task = bar.add_task("racing", total=len(lanes) * steps)
+        task = bar.add_task("racing", total=len(lane) * steps)
         done = races.race(
-            lanes,
-            on_step=lambda: bar.advance(task),
-            gait=read_gait(gait),
-            **walk.fields(),
-            **settings,
+            [entrant.lane for entrant in entrants], on_step=lambda: bar.advance(task), **options
         )
     if as_json:
-        shown = {
-            "config": to_json(done.config),
-            "result": to_json(done.result),
-            "gait": _gaits(done),
-            "best_known_m": done.best_known_m,
-            "recording_sha256": done.recording_sha256,
-        }
-        print(json.dumps(shown))
+        print(json.dumps(_as_json(done)))
     else:
         show_lanes(done, clock)
     return FAILED if done.failed else 0
 
 
-def _lane(text: str, observation: Any) -> races.Lane:
+class _Entrant(NamedTuple):
+    """A lane, with the path of its table; None without one."""
+
+    lane: races.Lane
+    table: str | None
+
+
+def _keep(
+    entrants: Sequence[_Entrant],
+    options: Mapping[str, Any],
+    kept_in: Settings,
+    clock: Clock,
+    *,
+    name: str | None,
+    as_json: bool,
+) -> int:
+    """Race, and keep the race in the data folder, with a progress bar."""
+    # Imported here, as the database modules would slow the start of other commands.
+    from app.cli import kept_runs  # noqa: PLC0415
+
+    kept_runs.check_keepable(entrant.lane.config.agent for entrant in entrants)
+    config = races.config_of([entrant.lane for entrant in entrants], options)
+    tables = [entrant.table for entrant in entrants]
+    kept, done = kept_runs.keep_race(kept_in, config, name=name, tables=tables)
+    if done is None:
+        return kept.report_unfinished()
+    if as_json:
+        print(json.dumps({"id": kept.id, "name": kept.progress.name, **_as_json(done)}))
+    else:
+        show_lanes(done, clock)
+        kept.print_where()
+    return FAILED if done.failed else 0
+
+
+def _as_json(done: races.Race) -> dict[str, Any]:
+    return {
+        "config": to_json(done.config),
+        "result": to_json(done.result),
+        "gait": _gaits(done),
+        "best_known_m": done.best_known_m,
+        "recording_sha256": done.recording_sha256,
+    }
+
+
+def _lane(text: str, observation: Any) -> _Entrant:
     """Parse `AGENT[=Q.NPZ][,NAME=VALUE]…`; any other comma belongs to the path."""
     head, *setting_texts = _SETTING.split(text)
     agent, _, path = head.partition("=")
@@ -112,7 +155,7 @@ def _lane(text: str, observation: Any) -> races.Lane:
             f"a {agent} lane needs its table: --lane {agent}=q.npz (hexapods train --out q.npz "
             f"makes one), or learns in the race: --lane {agent},keep_learning=true"
         )
-    return races.lane(agent, table=table, **settings)
+    return _Entrant(races.lane(agent, table=table, **settings), path or None)
 
 
 def _gaits(done: races.Race) -> list[dict[str, Any] | None]:

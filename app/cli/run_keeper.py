@@ -4,71 +4,77 @@ A server computes such a run as those that its page starts. Without one, this pr
 folder as a server would, and its jobs are the same, so that what is kept is the same in both.
 """
 
-import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from urllib.parse import quote
 
 from app.cli.server_client import call_server, fetch_from_server
 from app.cli.stored_runs import open_for_writing
+from app.jobs.submissions import RaceStart, TrainingStart
 from app.settings import Settings
 from app.storage.run import NOT_ENDED, TABLE, State
 from app.storage.server_lock import FolderInUse, read_address_file, remove_address_file
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import from_json, to_json
-from hexapods.interruption import stop_signals
-from hexapods.runs.config import TrainingConfig, usable_agents
+from hexapods.runs.config import usable_agents
+from hexapods.runs.race_file import race_recording
+from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import TrainingResult
-from hexapods.trainings import CurvePoint, Training, training_from_bytes
+from hexapods.runs.tables import read_arrays
 
 if TYPE_CHECKING:
     from app.jobs.jobs import Jobs
     from app.storage.database.store import RunStore
+    from app.storage.recordings import Recordings
 
-_LOOK_EVERY_S = 0.2
 _PRELOADED = ["app.jobs.worker", "hexapods.physics.mujoco_simulator"]
 """Modules that the processes of jobs import."""
+AnyStart = TrainingStart | RaceStart
 
 
 class Progress(NamedTuple):
-    """A training that is kept, as it is now.
+    """A run that is kept, as it is now.
 
     Attributes:
         name: its name.
         state: its state.
-        done: steps that are done.
+        done: steps that are done; of a race, of all its lanes.
         error: why it has ended before its last step, a sentence; None if it has not.
-        result: distances and hash of the table; None before its end.
     """
 
     name: str
     state: State
     done: int
     error: str | None
-    result: TrainingResult | None
 
 
-class KeptTraining(NamedTuple):
-    """A training in the data folder.
-
-    Attributes:
-        id: id of the run.
-        progress: how it has ended.
-        was_interrupted: whether Ctrl-C has stopped it.
-        training: it with its curve; None unless it is finished.
-        address: of the server that has computed it; None if this process has.
-    """
+class KeptRun(Protocol):
+    """A run in the data folder, which is computed there."""
 
     id: str
-    progress: Progress
-    was_interrupted: bool
-    training: Training | None
-    address: str | None
+
+    def look(self) -> Progress:
+        """Return how far it is."""
+
+    def stop(self) -> None:
+        """Stop it between two steps, unless it has ended; what is done is kept."""
+
+    def training_result(self) -> TrainingResult | None:
+        """Return distances and hash of the table of a training; None before its end."""
+
+    def table(self) -> bytes:
+        """Return the file of the table of a training."""
+
+    def curve(self) -> list[dict[str, Any]]:
+        """Return the evaluations of a training."""
+
+    def lanes(self) -> Sequence[LaneRecording]:
+        """Return the recording of a race that has ended."""
 
 
 class RunKeeper(Protocol):
-    """Computes trainings, and keeps them."""
+    """Computes runs, and keeps them."""
 
     address: str | None
     """Of the server; None if this process computes."""
@@ -76,72 +82,8 @@ class RunKeeper(Protocol):
     def add_table(self, data: bytes) -> str:
         """Keep a table as a finished training, and return its id."""
 
-    def start(self, config: TrainingConfig, name: str | None, continue_from: str | None) -> str:
-        """Queue a training, and return its id."""
-
-    def look(self, training_id: str) -> Progress:
-        """Return how far a training is."""
-
-    def stop(self, training_id: str) -> None:
-        """Stop a training between two steps; what is done is kept."""
-
-    def table(self, training_id: str) -> bytes:
-        """Return the file of a training's table."""
-
-    def curve(self, training_id: str) -> list[dict[str, Any]]:
-        """Return the evaluations of a training."""
-
-
-def check_keepable(agent: str) -> None:
-    """Check that the page can show what an agent learns.
-
-    Raises:
-        InvalidInput: if the agent is not registered, so that a server does not know it.
-    """
-    if agent not in (registered := usable_agents()):
-        raise InvalidInput(
-            f"--keep is for agents that every server of the data folder knows, not for {agent}: "
-            f"{', '.join(registered)}; a package registers further ones (docs/your-agent.md)"
-        )
-
-
-def keep_training(
-    settings: Settings,
-    config: TrainingConfig,
-    *,
-    name: str | None = None,
-    table: bytes | None = None,
-    on_progress: Callable[[Progress], object] = lambda progress: None,  # noqa: ARG005
-) -> KeptTraining:
-    """Train, and keep the training in the data folder with all that one of the page has.
-
-    The first Ctrl-C stops it as *Stop* on the page does; a second one ends this process at once.
-
-    Args:
-        settings: say which data folder.
-        config: of the training.
-        name: of the run; None for a generated one.
-        table: file of the table that it begins with, which is kept as a training, too.
-        on_progress: called some times a second.
-
-    Raises:
-        HexapodError: if the folder cannot be used, or the training not be started.
-    """
-    with run_keeper(settings) as keeper, stop_signals(signal.SIGINT) as interrupted:
-        continue_from = None if table is None else keeper.add_table(table)
-        training_id = keeper.start(config, name, continue_from)
-        while (progress := keeper.look(training_id)).state in NOT_ENDED:
-            on_progress(progress)
-            if interrupted.wait(_LOOK_EVERY_S):
-                keeper.stop(training_id)
-                progress = keeper.look(training_id)
-                break
-        training = None
-        if progress.state == "finished":
-            learned = training_from_bytes(keeper.table(training_id), "the table")
-            curve = tuple(CurvePoint(**point) for point in keeper.curve(training_id))
-            training = Training(learned.config, learned.table, curve, progress.result)
-        return KeptTraining(training_id, progress, interrupted.is_set(), training, keeper.address)
+    def start(self, start: AnyStart) -> KeptRun:
+        """Queue a run."""
 
 
 @contextmanager
@@ -170,47 +112,78 @@ class _ServerJobs:
         self.address = read_address_file(settings.data)
 
     def add_table(self, data: bytes) -> str:
-        return self._id(call_server(self._settings, "POST", "api/v1/trainings/import", data))
+        return str(call_server(self._settings, "POST", "api/v1/trainings/import", data)["id"])
 
-    def start(self, config: TrainingConfig, name: str | None, continue_from: str | None) -> str:
-        body = {**to_json(config), "name": name, "continue_from": continue_from}
-        if continue_from is not None:
-            del body["seed"]  # the generator of the table goes on
-        return self._id(call_server(self._settings, "POST", "api/v1/trainings", body))
+    def start(self, start: AnyStart) -> "_ServerRun":
+        if isinstance(start, RaceStart):
+            path, body = "api/v1/races", _race_body(start)
+        else:
+            path, body = "api/v1/trainings", _training_body(start)
+        return _ServerRun(self._settings, path, call_server(self._settings, "POST", path, body))
 
-    def look(self, training_id: str) -> Progress:
-        view = call_server(self._settings, "GET", _path(training_id))
-        result = None
-        if view["result"] is not None:
-            result = from_json(TrainingResult, view["result"])
-        done = view["progress"]["done"]
-        return Progress(view["name"], view["state"], done, view["error"], result)
 
-    def stop(self, training_id: str) -> None:
-        if self.look(training_id).state in NOT_ENDED:
-            call_server(self._settings, "POST", f"{_path(training_id)}/stop")
+def _training_body(start: TrainingStart) -> dict[str, Any]:
+    """Return the request that starts a training."""
+    body = {**to_json(start.config), "name": start.name, "continue_from": start.continue_from}
+    if start.continue_from is not None:
+        del body["seed"]  # the generator of the table goes on
+    return body
 
-    def table(self, training_id: str) -> bytes:
-        return fetch_from_server(self._settings, f"{_path(training_id)}/q-table?format=npz")
 
-    def curve(self, training_id: str) -> list[dict[str, Any]]:
-        answer = call_server(self._settings, "GET", f"{_path(training_id)}/curve")
+def _race_body(start: RaceStart) -> dict[str, Any]:
+    """Return the request that starts a race."""
+    lanes = [
+        {
+            "agent": lane.agent,
+            "training_id": lane.training_id,
+            "settings": dict(lane.settings),
+            **lane.given,
+        }
+        for lane in start.lanes
+    ]
+    numbers = {"steps": start.steps, "seed": start.seed}
+    return {**to_json(start.walk), **numbers, "lanes": lanes, "name": start.name}
+
+
+class _ServerRun:
+    """A run of the server that has the data folder."""
+
+    def __init__(self, settings: Settings, path: str, view: Any) -> None:
+        self._settings, self.id = settings, str(view["id"])
+        self._path = f"{path}/{quote(self.id, safe='')}"
+
+    def look(self) -> Progress:
+        view = self._view()
+        return Progress(view["name"], view["state"], view["progress"]["done"], view["error"])
+
+    def stop(self) -> None:
+        if self.look().state in NOT_ENDED:
+            call_server(self._settings, "POST", f"{self._path}/stop")
+
+    def training_result(self) -> TrainingResult | None:
+        result = self._view()["result"]
+        return None if result is None else from_json(TrainingResult, result)
+
+    def table(self) -> bytes:
+        return fetch_from_server(self._settings, f"{self._path}/q-table?format=npz")
+
+    def curve(self) -> list[dict[str, Any]]:
+        answer = call_server(self._settings, "GET", f"{self._path}/curve")
         evaluations: list[dict[str, Any]] = answer["evaluations"]
         return evaluations
 
-    @staticmethod
-    def _id(run: Any) -> str:
-        return str(run["id"])
+    def lanes(self) -> Sequence[LaneRecording]:
+        data = fetch_from_server(self._settings, f"{self._path}/recording?format=npz")
+        return race_recording(read_arrays(data))
 
-
-def _path(training_id: str) -> str:
-    return f"api/v1/trainings/{quote(training_id, safe='')}"
+    def _view(self) -> Any:
+        return call_server(self._settings, "GET", self._path)
 
 
 @contextmanager
 def _jobs_here(store: "RunStore", settings: Settings) -> "Iterator[_OwnJobs]":
     """Yield jobs of this process; at the end unfinished runs are `interrupted`."""
-    # Imported here, as they would slow the start of commands that keep nothing.
+    # Imported here, as a command whose runs a server computes has no jobs.
     from app.events.bus import EventBus  # noqa: PLC0415
     from app.jobs.jobs import Jobs  # noqa: PLC0415
     from app.storage.recordings import Recordings  # noqa: PLC0415
@@ -218,10 +191,11 @@ def _jobs_here(store: "RunStore", settings: Settings) -> "Iterator[_OwnJobs]":
 
     remove_address_file(settings.data)  # of a server that has ended
     start_fork_server(_PRELOADED)
-    jobs = Jobs(store, Recordings(store), EventBus())
+    recordings = Recordings(store)
+    jobs = Jobs(store, recordings, EventBus())
     jobs.open()
     try:
-        yield _OwnJobs(jobs, store)
+        yield _OwnJobs(jobs, store, recordings)
     finally:
         jobs.close()
 
@@ -231,8 +205,8 @@ class _OwnJobs:
 
     address: str | None = None
 
-    def __init__(self, jobs: "Jobs", store: "RunStore") -> None:
-        self._jobs, self._store = jobs, store
+    def __init__(self, jobs: "Jobs", store: "RunStore", recordings: "Recordings") -> None:
+        self._jobs, self._store, self._recordings = jobs, store, recordings
 
     def add_table(self, data: bytes) -> str:
         from app.jobs.table_import import import_table  # noqa: PLC0415 - as above
@@ -240,25 +214,42 @@ class _OwnJobs:
         self._store.check_disk_space(len(data))
         return import_table(self._jobs, data, usable_agents()).id
 
-    def start(self, config: TrainingConfig, name: str | None, continue_from: str | None) -> str:
-        from app.jobs.submissions import TrainingStart  # noqa: PLC0415 - as above
-
+    def start(self, start: AnyStart) -> "_OwnRun":
         self._store.check_disk_space()
-        return self._jobs.start(TrainingStart(config, name, continue_from)).id
+        return _OwnRun(self._jobs.start(start).id, self._jobs, self._store, self._recordings)
 
-    def look(self, training_id: str) -> Progress:
-        run = self._store.get(training_id)
-        return Progress(run.name, run.state, run.done, run.error, run.result)
 
-    def stop(self, training_id: str) -> None:
-        if self.look(training_id).state in NOT_ENDED:
-            self._jobs.stop(training_id)
+class _OwnRun:
+    """A run of jobs of this process."""
 
-    def table(self, training_id: str) -> bytes:
-        table = self._store.artifact(training_id, TABLE)
+    def __init__(
+        self, run_id: str, jobs: "Jobs", store: "RunStore", recordings: "Recordings"
+    ) -> None:
+        self.id, self._jobs, self._store, self._recordings = run_id, jobs, store, recordings
+
+    def look(self) -> Progress:
+        run = self._store.get(self.id)
+        return Progress(run.name, run.state, run.done, run.error)
+
+    def stop(self) -> None:
+        if self.look().state in NOT_ENDED:
+            self._jobs.stop(self.id)
+
+    def training_result(self) -> TrainingResult | None:
+        result = self._store.get(self.id).result
+        return result if isinstance(result, TrainingResult) else None
+
+    def table(self) -> bytes:
+        table = self._store.artifact(self.id, TABLE)
         if table is None:
-            raise InvalidInput(f"training {training_id} has no table")
+            raise InvalidInput(f"training {self.id} has no table")
         return table
 
-    def curve(self, training_id: str) -> list[dict[str, Any]]:
-        return [dict(point) for point in self._store.curves.get(training_id)]
+    def curve(self) -> list[dict[str, Any]]:
+        return [dict(point) for point in self._store.curves.get(self.id)]
+
+    def lanes(self) -> Sequence[LaneRecording]:
+        lanes = self._recordings.race(self.id)
+        if lanes is None:
+            raise InvalidInput(f"race {self.id} has no recording")
+        return lanes

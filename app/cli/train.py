@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
 
@@ -28,9 +28,6 @@ from hexapods.interruption import Interrupted
 from hexapods.runs.config import TrainingConfig, WalkingProblem, usable_agents
 from hexapods.runs.records import Evaluated, StepTaken, TrainingRecord
 from hexapods.trainings import Training, learned_by, read_table
-
-if TYPE_CHECKING:
-    from app.cli import run_keeper
 
 _WALK_SETTINGS = declared_fields(WalkingProblem)
 _PRACTICE_SETTINGS = {
@@ -131,53 +128,24 @@ def _keep(
 ) -> int:
     """Train, and keep the training in the data folder, with a progress bar."""
     # Imported here, as the database modules would slow the start of other commands.
-    from app.cli import run_keeper  # noqa: PLC0415
+    from app.cli import kept_runs  # noqa: PLC0415
 
-    run_keeper.check_keepable(agent)
+    kept_runs.check_keepable([agent])
     _check_no_seed(table, options)
     trained = read_table(table) if table else None
     if trained is not None:
         learned_by(agent, trained)
     config = practice.config_of(agent, trained, options)
-    with progress() as bar:
-        task = bar.add_task("practising", total=config.steps)
-
-        def show(now: run_keeper.Progress) -> None:
-            state = "practising" if now.state == "running" else now.state
-            bar.update(task, completed=now.done, description=state)
-
-        kept = run_keeper.keep_training(
-            kept_in,
-            config,
-            name=name,
-            table=None if table is None else Path(table).read_bytes(),
-            on_progress=show,
-        )
-    return _report_kept(kept, config.steps, out, as_json=as_json)
-
-
-def _report_kept(
-    kept: "run_keeper.KeptTraining", steps: int, out: str | None, *, as_json: bool
-) -> int:
-    """Write the table to its file, print what has come of a kept training; return the exit code."""
-    ended, training = kept.progress, kept.training
+    kept, training = kept_runs.keep_training(kept_in, config, name=name, table=table)
     if training is None:
-        how = "Stopped" if ended.state == "stopped" else f"It {ended.state}"
-        reason = "" if ended.error is None else f" ({ended.error.rstrip('.')})"
-        print(
-            f"{how} after {ended.done:,} of {steps:,} steps{reason}; they are kept as training "
-            f"{kept.id}, {ended.name!r}, which Resume on the page goes on with.",
-            file=sys.stderr,
-        )
-        return INTERRUPTED if kept.was_interrupted else FAILED
+        return kept.report_unfinished()
     if out:
         write_whole(out, training.to_bytes())
     if as_json:
-        print(json.dumps({"id": kept.id, "name": ended.name, **_as_json(training)}))
+        print(json.dumps({"id": kept.id, "name": kept.progress.name, **_as_json(training)}))
         return 0
     _print_result(training, out)
-    where = "`hexapods serve` shows it" if kept.address is None else f"{kept.address} shows it"
-    print(f"It is kept as training {kept.id}, {ended.name!r}; {where}.")
+    kept.print_where()
     return 0
 
 

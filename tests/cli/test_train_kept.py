@@ -1,9 +1,6 @@
 """`hexapods train --keep`: what is kept is equal to a training of the page."""
 
-import os
-import signal
 import sqlite3
-import time
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +11,10 @@ from app.storage.database.opening import DATABASE_FILE
 from app.storage.recordings import Recordings
 from app.storage.run import TABLE
 from hexapods.runs.tables import digest_of, from_bytes
+from tests.cli.keeping import interrupted
 from tests.cli.running import in_process, output, refusal
-from tests.forked import start_hexapods
 from tests.served import Served
 from tests.storage.stores import opened
-from tests.timeouts import ProgressTimeout
 
 TRAIN = ("train", "--simulator", "kinematic", "--steps", "120", "--seed", "5", "--keep")
 BODY = {"simulator": "kinematic", "steps": 120, "seed": 5}
@@ -76,36 +72,11 @@ def test_a_table_of_a_file_is_continued_and_kept_too(tmp_path: Path) -> None:
         assert store.get(run.continued_from).state == "finished"
 
 
-def steps_done(data: Path) -> int:
-    """Return the steps of the newest run, as another process may read them."""
-    if not (data / DATABASE_FILE).exists():
-        return 0
-    with sqlite3.connect(f"file:{data / DATABASE_FILE}?mode=ro", uri=True) as database:
-        try:
-            rows = database.execute("SELECT done FROM runs").fetchall()
-        except sqlite3.OperationalError:  # it is being made
-            return 0
-    return max((done for (done,) in rows), default=0)
-
-
 @pytest.mark.parametrize("is_served", [False, True])
 def test_ctrl_c_stops_it_and_keeps_what_is_done(tmp_path: Path, is_served: bool) -> None:
     data = tmp_path / "data"
     server = Served(data) if is_served else None
-    with (tmp_path / "errors").open("w+", encoding="utf-8") as errors:
-        process = start_hexapods(
-            [*ENDLESS, "--keep"], {"PATH": "/usr/bin:/bin", "HEXAPODS_DATA": str(data)}, errors
-        )
-        stall_check = ProgressTimeout()
-        while (done := steps_done(data)) == 0:
-            stall_check.check(done)
-            time.sleep(0.1)
-        os.kill(process.pid, signal.SIGINT)
-        assert process.stdout is not None
-        process.stdout.close()
-        assert process.wait(60) == 130
-        errors.seek(0)
-        sentence = errors.read()
+    sentence = interrupted(*ENDLESS, "--keep", data=data, once="done > 0")
     if server is not None:
         server.end()
     with opened(data, None) as store:
@@ -114,10 +85,8 @@ def test_ctrl_c_stops_it_and_keeps_what_is_done(tmp_path: Path, is_served: bool)
         table = store.artifact(run.id, TABLE)
         assert table is not None
         assert digest_of(from_bytes(table, "the table").arrays)
-    assert (
-        f"Stopped after {run.done:,} of 10,000,000 steps; they are kept as training {run.id}"
-        in (sentence)
-    )
+    said = f"Stopped after {run.done:,} of 10,000,000 steps; they are kept as training {run.id}"
+    assert said in sentence
 
 
 def test_refusals_name_what_is_valid(tmp_path: Path) -> None:
