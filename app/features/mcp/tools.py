@@ -65,8 +65,8 @@ class Tools:
         cursor: Annotated[str | None, Field(description="next_cursor of the page before")] = None,
     ) -> RunList:
         """List runs, the newest first, each with its state and its distance."""
-        asked = {"kind": kind, "state": state, "search": search, "cursor": cursor}
-        page = self._get("runs", limit=limit, **asked)
+        filters = {"kind": kind, "state": state, "search": search}
+        page = self._get("runs", limit=limit, cursor=cursor, **filters)
         runs = [RunSummary.of(view) for view in page["items"]]
         return RunList(runs=runs, next_cursor=page["next_cursor"])
 
@@ -170,8 +170,9 @@ class Tools:
         return view
 
     def _get(self, path: str, **query: Any) -> Any:
-        asked = {name: value for name, value in query.items() if value is not None}
-        return self._call("GET", f"api/v1/{path}{'?' * bool(asked)}{urlencode(asked)}")
+        parameters = {name: value for name, value in query.items() if value is not None}
+        address = f"api/v1/{path}{'?' * bool(parameters)}{urlencode(parameters)}"
+        return self._call("GET", address)
 
     def _call(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:
         """Ask the server.
