@@ -1,6 +1,7 @@
 """Route of the address at which others watch, with its QR code; used by `serve --share`, too."""
 
-from functools import lru_cache
+from collections.abc import Collection
+from functools import cache, lru_cache
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
@@ -72,6 +73,12 @@ def page_address(request: Request, settings: Settings, path: str) -> str:
     return address.rstrip("/").removesuffix(stage_of(request.scope).path) + path
 
 
+@cache
+def _languages() -> Collection[str]:
+    """Return the languages of the page, listed once, as rooms often ask for links."""
+    return frozenset(languages_of(static_dir()))
+
+
 class Link(NamedTuple):
     """Link to a page of this server.
 
@@ -89,7 +96,7 @@ def link_to(request: Request, settings: Settings, path: str) -> Link:
     address = page_address(request, settings, path)
     # Of a page that is not in English.
     language = request.headers.get("page-language", "")
-    if language in languages_of(static_dir()):
+    if language in _languages():
         address += f"?lang={language}"
     is_reachable = address_for_others(request, settings) is not None
     return Link(address, qr_image(address) if is_reachable else None)
