@@ -36,8 +36,11 @@ OF_FEATURE = {
     "robots": "/api/v1/robots/{robot_id}",
     "presenter": "/static/features/presenter/presenter-panel.js",
 }
-"""An address of each."""
-NAMES = tuple(name for name in OF_FEATURE if find_spec(f"app.features.{name}") is not None)
+"""An address of each but of those that are a command alone."""
+COMMANDS_ALONE = ("mcp",)
+NAMES = tuple(
+    name for name in (*OF_FEATURE, *COMMANDS_ALONE) if find_spec(f"app.features.{name}") is not None
+)
 """Those whose folders are there."""
 
 
@@ -156,9 +159,9 @@ def test_a_server_without_features_runs_a_race_and_knows_no_address_of_them(
 ) -> None:
     with running(Settings(data=tmp_path, job_niceness=0, without=without)) as api:
         described = api.client.get("/openapi.json").json()["paths"]
-        for name in without:
-            assert api.client.get(OF_FEATURE[name]).status_code == 404
-            assert not [path for path in described if OF_FEATURE[name] in path]
+        for address in (OF_FEATURE[name] for name in without if name in OF_FEATURE):
+            assert api.client.get(address).status_code == 404
+            assert not [path for path in described if address in path]
         race = {"lanes": [{"agent": "greedy"}, {"agent": "random-walk"}], "steps": 2}
         assert api.finished(api.race(**race))["result"]["lanes"]
 
@@ -248,7 +251,7 @@ if __name__ == "__main__":
     with running(Settings(data=Path(sys.argv[1]), job_niceness=0)) as api:
         lanes = [{"agent": "greedy"}, {"agent": "random-walk"}]
         print(len(api.finished(api.race(lanes=lanes, steps=2))["result"]["lanes"]))
-        print(api.client.get("/").status_code, api.client.get(sys.argv[2]).status_code)
+        print(*(api.client.get(address).status_code for address in ("/", *sys.argv[2:])))
 """
 
 
@@ -260,12 +263,14 @@ def test_the_folder_of_a_feature_can_be_deleted(name: str, tmp_path: Path) -> No
     for folder in ("app", "docs", "hexapods", "models", "static", "tests"):
         shutil.copytree(ROOT / folder, copy / folder, ignore=shutil.ignore_patterns("__pycache__"))
     for folder in ("app", "static", "tests"):
-        shutil.rmtree(copy / folder / "features" / name)
+        if (copy / folder / "features" / name).is_dir():
+            shutil.rmtree(copy / folder / "features" / name)
     (copy / "race_without.py").write_text(_RACE_WITHOUT)
-    command = [sys.executable, "race_without.py", str(tmp_path / "data"), OF_FEATURE[name]]
+    addresses = [OF_FEATURE[name]] if name in OF_FEATURE else []
+    command = [sys.executable, "race_without.py", str(tmp_path / "data"), *addresses]
     environment = {**os.environ, "PYTHONPATH": str(copy)}
     done = subprocess.run(
         command, cwd=copy, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines() == ["2", "200 404"]
+    assert done.stdout.splitlines() == ["2", " ".join(["200", *(["404"] * len(addresses))])]

@@ -182,3 +182,8 @@ def test_a_missing_extra_is_named_with_the_line_that_installs_it(
     sentence = refusal("mcp", folder=tmp_path, run=in_process)
     assert "hexapods mcp needs a package" in sentence
     assert "racing-hexapods[mcp]" in sentence
+
+
+def test_the_command_is_left_out_as_any_feature(tmp_path: Path) -> None:
+    sentence = refusal("mcp", folder=tmp_path, run=in_process, HEXAPODS_WITHOUT="mcp")
+    assert "mcp is a command of the feature mcp, which HEXAPODS_WITHOUT leaves out" in sentence
