@@ -21,6 +21,7 @@ from tests.browser.rooms import (
     phone,
 )
 from tests.browser.serving import Serving, finished, serving
+from tests.browser.test_connection import proxy_that_holds_streams_back
 from tests.conftest import new_page
 from tests.forked import start_hexapods
 
@@ -373,3 +374,24 @@ def test_a_tournament_goes_on_when_its_server_comes_back(
             expect(page.get_by_text("Reconnecting")).to_have_count(0)
             api.post(f"tournaments/{tournament['id']}/end", json={}).raise_for_status()
             pupil.sees("Judging the last entries")
+
+
+@pytest.mark.promises
+@pytest.mark.parametrize("place", ["", "?projector"])
+def test_where_streams_are_held_back_the_ranking_is_followed_all_the_same(
+    place: str, flat_browser: Browser, school: Serving
+) -> None:
+    with (
+        school.api(TOKEN) as api,
+        proxy_that_holds_streams_back(school.port) as address,
+        new_page(flat_browser, viewport=SCREEN) as page,
+    ):
+        opened = api.post("tournaments", json={"title": "Cup", "rules": RULES})
+        path = f"tournaments/{opened.raise_for_status().json()['id']}"
+        page.goto(f"{address}t/{opened.json()['id']}{place}")
+        said = "This network holds live updates back. The page asks every 2 seconds."
+        expect(page.get_by_text(said)).to_be_visible()
+        expect(page.get_by_text("Reconnecting")).to_have_count(0)
+        api.post(f"{path}/end").raise_for_status()
+        expect(page.get_by_text("Ended", exact=True).first).to_be_visible()
+        api.delete(path).raise_for_status()

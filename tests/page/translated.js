@@ -23,5 +23,5 @@ export const PHONE = [
   ...["allowed-settings", "card-actions", "chart", "clocks", "join", "lane-names", "main", "participant-run", "phone",
     "phone-results", "picture", "press-strip", "questions", "room", "run-sentences", "scores", "teach-phone"]
     .map((name) => `${ROOM}/${name}.js`),
-  "static/js/components/dot-strip.js", "static/js/components/number-row.js",
+  "static/js/components/away.js", "static/js/components/dot-strip.js", "static/js/components/number-row.js",
 ];

@@ -1,12 +1,13 @@
 // Entry point of a tournament's page: of entrants and watchers, of its operator, or for the projector.
 import { effect } from "@preact/signals";
 import { render } from "preact";
+import { Away } from "../../js/components/away.js";
 import { Deletions } from "../../js/components/deletions.js";
 import { html, Icon } from "../../js/components/elements.js";
 import { Loaded } from "../../js/features.js";
 import { codeInGroups } from "../../js/format.js";
 import { followTheme, nextTheme, theme, toastMessage } from "../../js/page.js";
-import { isAway, options } from "../../js/store.js";
+import { options } from "../../js/store.js";
 import { Enter } from "./enter.js";
 import { Operator } from "./operator.js";
 import { Ranking } from "./ranking.js";
@@ -46,11 +47,7 @@ function Whole() {
   const { state } = shownTournament();
   return html`
     <${Header} />
-    ${isAway.value && html`
-      <p class="strip-note warn" role="status">
-        <span class="spinner" aria-hidden="true"></span> Reconnecting. This is the last that is known; entries are kept.
-      </p>
-    `}
+    <${Away} words="This is the last that is known; entries are kept." />
     <main class="tournament">
       <${About} />
       <${Enter} />

@@ -1,7 +1,7 @@
 // The projector: title and state, the way there, and the ranking in large.
+import { Away } from "../../js/components/away.js";
 import { html } from "../../js/components/elements.js";
 import { shortAddress } from "../../js/format.js";
-import { isAway } from "../../js/store.js";
 import { Table } from "./ranking.js";
 import { stateInWords } from "./states.js";
 import { entries, shownTournament, unranked } from "./tournament.js";
@@ -16,11 +16,7 @@ export function Projector() {
   const shown = shortened(standings, isReference, MOST);
   return html`
     <main class="tournament-projector">
-      ${isAway.value && html`
-        <p class="strip-note warn" role="status">
-          <span class="spinner" aria-hidden="true"></span> Reconnecting. This is the last that is known.
-        </p>
-      `}
+      <${Away} />
       <header>
         <div>
           <h1 title=${title}>${title}</h1>

@@ -1,5 +1,6 @@
 // The teacher's cockpit: the code, the card and the next one, what all may do, who is in and how far.
 import { signal } from "@preact/signals";
+import { Away } from "../../../js/components/away.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { Dialog, html, Icon } from "../../../js/components/elements.js";
 import { Loaded, Slot } from "../../../js/features.js";
@@ -9,7 +10,7 @@ import { PupilsWindow, Sharing } from "../components/sharing.js";
 import { codeInGroups, count, inLanguage, metres, shortAddress } from "../../../js/format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../../../js/page.js";
 import { runs, stage } from "../../../js/store.js";
-import { Away, Failure } from "./join.js";
+import { Failure } from "./join.js";
 import { gainInWords } from "./acts/gain-words.js";
 import { ClockChoice } from "./clocks.js";
 import { People } from "./people.js";

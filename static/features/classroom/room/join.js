@@ -1,8 +1,6 @@
 // Before the room: its door for a stranger, a wrong code, and what all pages of a room share.
 import { useState } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
-import { isPolling } from "../../../js/events.js";
-import { isAway } from "../../../js/store.js";
 import { codeInGroups, inLanguage, listed, t } from "../../../js/format.js";
 import { LANGUAGES } from "../../../js/page-state.js";
 import { waits } from "./busy-server.js";
@@ -90,15 +88,3 @@ export function Door() {
     </main>
   `;
 }
-
-/** Told while the page hears nothing of the room, or only what it asks for. @param {{ words?: string }} props */
-export const Away = ({ words = t("This is the last that is known.") }) => html`
-  ${isAway.value && html`
-    <p class="strip-note warn" role="status">
-      <span class="spinner" aria-hidden="true"></span> Reconnecting. ${words}
-    </p>
-  `}
-  ${isPolling.value && html`
-    <p class="strip-note" role="status">This network holds live updates back. The page asks every 2 seconds.</p>
-  `}
-`;

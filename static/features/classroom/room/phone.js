@@ -2,12 +2,13 @@
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
+import { Away } from "../../../js/components/away.js";
 import { Dialog, html } from "../../../js/components/elements.js";
 import { Loaded, Slot, withStyle } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups } from "../../../js/format.js";
 import { CardActions, Next } from "./card-actions.js";
-import { Away, Door, Failure, NoLanguage } from "./join.js";
+import { Door, Failure, NoLanguage } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { Answer, KINDS, scoreInWords } from "./questions.js";
 import {

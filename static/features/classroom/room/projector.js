@@ -1,12 +1,12 @@
 // The projector: code and QR, the card and its question, the robots, and the act that reveals what came of it.
 import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
+import { Away } from "../../../js/components/away.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { Slot } from "../../../js/features.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups, metres, shortAddress } from "../../../js/format.js";
-import { Away } from "./join.js";
 import { actOf } from "./acts/index.js";
 import { walkedRow } from "./acts/distances.js";
 import { useBox } from "./acts/plot.js";
