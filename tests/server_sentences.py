@@ -58,10 +58,10 @@ def english_left(text: str, names: Sequence[str] = ()) -> set[str]:
 
 
 @cache
-def keys(language: str) -> Set[str]:
-    """Return the keys of the sentences that a catalogue has."""
+def keys(language: str, part: str = "sentences") -> Set[str]:
+    """Return the keys of the sentences, or of another part, that a catalogue has."""
     catalogue = json.loads((assets.static_dir() / f"messages/{language}.json").read_text("utf-8"))
-    return frozenset(catalogue["sentences"])
+    return frozenset(catalogue[part])
 
 
 _PLACE = re.compile(r"\{[^}]*\}")

@@ -25,7 +25,7 @@ from app.storage.run_names import branch_name, race_name, training_name
 from hexapods import assets
 from hexapods.agents.experts import MeasuredExpert, PlannedExpert
 from hexapods.agents.explanation import ChoiceExplanation, Future
-from hexapods.agents.registry import compares
+from hexapods.agents.registry import compares, registered
 from hexapods.assembly import build_learner
 from hexapods.domain.types import Action
 from hexapods.domain.world import WORLDS
@@ -195,6 +195,14 @@ def test_every_refusal_of_a_room_is_there() -> None:
 
     assert len(refusals) > 20
     assert refusals - {without_names(key) for key in keys("de")} == set()
+
+
+def test_agents_have_one_name_in_all_languages() -> None:
+    """It is also in the names of lanes, which races store."""
+    titles = {agent.title for agent in registered().values()}
+
+    for language in ("de", "fr"):
+        assert titles & (keys(language, "server") | keys(language, "page")) == set()
 
 
 def test_numbers_are_those_of_the_page(all_said: Said) -> None:
