@@ -149,8 +149,9 @@ def _sentence(field: str, error: Mapping[str, Any], path: list[Any]) -> str:
         return f"{field} {error['msg']}."
     if error["type"] == "json_invalid":
         return "The request's body is not valid JSON."
-    if not names:
-        return "The request's body must be a JSON object, sent as application/json."
+    if not names or (error["type"] in _NO_OBJECT and isinstance(path[-1], int)):
+        where, how = (field, "") if names else ("The request's body", ", sent as application/json")
+        return f"{where} must be a JSON object{how}."
     is_missing = error["type"] == "missing"
     valid = VALID.get(field) or VALID.get(names[-1])
     valid = _choices(error, valid) or valid or _length(error)

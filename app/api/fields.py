@@ -357,17 +357,26 @@ def named_in(
 
     def tag_of(value: Any) -> str:
         tag = value.get(field) if isinstance(value, dict) else getattr(value, field, None)
-        # The default's model rejects a body that is no object, or whose field is no text.
+        # The default's model rejects a body that is no object, or lacks a required field.
         return tag if isinstance(tag, str) else default or next(iter(models))
 
     def check_name(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
         name = value.get(field) if isinstance(value, dict) else None
-        if not isinstance(name, str) or name in models:
+        if isinstance(name, str):
+            if name in models:
+                return handler(value)
+            error = InitErrorDetails(
+                type="value_error",
+                loc=(field,),
+                input=None,
+                ctx={"error": UnknownName(noun, name[:MAX_NAME], models)},
+            )
+        elif isinstance(value, dict) and field in value:
+            error = InitErrorDetails(
+                type="literal_error", loc=(field,), input=None, ctx={"expected": ", ".join(models)}
+            )
+        else:
             return handler(value)
-        unknown = UnknownName(noun, name[:MAX_NAME], models)
-        error = InitErrorDetails(
-            type="value_error", loc=(field,), input=None, ctx={"error": unknown}
-        )
         # What settings there are depends on the name; the other fields are those of most models.
         others = {**value, field: most_fields}
         raise _all_errors(error, lambda: handler(others), without="settings")

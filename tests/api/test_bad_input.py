@@ -171,6 +171,21 @@ def test_an_unknown_field_is_told_together_with_the_other_errors(api: Api) -> No
     assert fields == {"", "branch_from", "branch_from.race_id", "branch_from.step"}
 
 
+@pytest.mark.parametrize("agent", [3, None, ["greedy"], {"name": "greedy"}])
+def test_a_name_that_is_no_text_is_answered_with_all_that_are_valid(
+    agent: object, api: Api
+) -> None:
+    problem = refused(api.call("POST", "/trainings", json={"agent": agent, "steps": 0}), 422)
+    told = {error["field"]: error["detail"] for error in problem["errors"]}
+    assert told.keys() == {"agent", "steps"}
+    assert told["agent"].startswith("agent must be q-learning, double-q, ")
+    problem = refused(api.call("POST", "/races", json={"lanes": [{"agent": agent}, 3]}), 422)
+    told = {error["field"]: error["detail"] for error in problem["errors"]}
+    assert told.keys() == {"lanes.0.agent", "lanes.1"}
+    assert ", greedy, " in told["lanes.0.agent"]
+    assert told["lanes.1"] == "lanes.1 must be a JSON object."
+
+
 @needs("experiments", "tournaments", "what_if")
 def test_an_unknown_name_is_told_together_with_the_other_errors(api: Api) -> None:
     lane = {"agent": "greedyy", "plans_with": "luck", "settings": {"deep": 1}}
