@@ -23,6 +23,7 @@ from app.features.explanations.names import ActionNames
 from app.features.explanations.sentences import SearchFindings, sentences_of
 from app.storage.run_names import branch_name, race_name, training_name
 from hexapods import assets
+from hexapods.agents.appearance import title_of
 from hexapods.agents.experts import MeasuredExpert, PlannedExpert
 from hexapods.agents.explanation import ChoiceExplanation, Future
 from hexapods.agents.registry import compares, registered
@@ -199,7 +200,7 @@ def test_every_refusal_of_a_room_is_there() -> None:
 
 def test_agents_have_one_name_in_all_languages() -> None:
     """It is also in the names of lanes, which races store."""
-    titles = {agent.title for agent in registered().values()}
+    titles = {title_of(name) for name in registered()}
 
     for language in ("de", "fr"):
         assert titles & (keys(language, "server") | keys(language, "page")) == set()

@@ -12,6 +12,8 @@ from tests.timeouts import ProgressTimeout
 
 ADDRESS = "http://127.0.0.1:8000"
 WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
+ENDLESS = 10_000_000
+"""Steps of a training that runs until it is stopped."""
 ENDED = ("finished", "stopped", "failed", "interrupted")
 
 
@@ -75,7 +77,7 @@ class Api:
 
     def slow_training(self, **options: Any) -> dict[str, Any]:
         """Start a training that runs until it is stopped."""
-        run = self.train(steps=10_000_000, pace=20, evaluate_every=0, **options)
+        run = self.train(steps=ENDLESS, pace=20, evaluate_every=0, **options)
         return self.until(run, lambda now: now["progress"]["done"] > 0)
 
     def look(self, run: dict[str, Any]) -> dict[str, Any]:
@@ -102,8 +104,14 @@ class Api:
         return self.call("POST", f"/{run['kind']}s/{run['id']}/{verb}")
 
     def stop(self, *runs: dict[str, Any]) -> None:
+        """Stop runs, with the trainings that they wait for, and wait until all have ended."""
         for run in runs:
             self.tell(run, "stop")
+        waiting_for = [
+            self.get(f"/trainings/{i}") for run in runs for i in run.get("waiting_for", [])
+        ]
+        for run in (*runs, *waiting_for):
+            self.ended(run)
 
 
 def refused(response: httpx2.Response, status: int, *words: str) -> dict[str, Any]:

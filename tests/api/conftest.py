@@ -14,7 +14,8 @@ from app.api.deps import Services
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
-from tests.api.calls import ADDRESS, Api, WholeAnswers
+from app.storage.run import NOT_ENDED
+from tests.api.calls import ADDRESS, ENDLESS, Api, WholeAnswers
 from tests.storage.stores import temporary_store
 
 
@@ -28,6 +29,18 @@ def api(data: Path) -> Iterator[Api]:
     """Return an API client of a server that the tests of this folder share."""
     with running(Settings(data=data, job_niceness=0)) as api:
         yield api
+
+
+@pytest.fixture(autouse=True)
+def _endless_trainings_are_stopped(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Fail a test that leaves one to those that share its server: it has a core to the end."""
+    if "api" not in request.fixturenames:
+        yield
+        return
+    api: Api = request.getfixturevalue("api")
+    yield
+    unended = [run for state in NOT_ENDED for run in api.services.store.list(state=state).runs]
+    assert [run.id for run in unended if run.total == ENDLESS] == []
 
 
 @contextmanager

@@ -197,6 +197,7 @@ def test_presses_are_recorded_where_the_agent_learns_from_them(api: Api) -> None
     other = api.slow_training()
     answer = api.call("PATCH", f"/trainings/{other['id']}", json={"presses": [[0, 1]]})
     refused(answer, 422, "does not learn from presses; those that do: tamer")
+    api.stop(other)
 
 
 def test_training_with_live_changes_is_reproducible(api: Api) -> None:

@@ -94,9 +94,7 @@ def test_what_has_no_trajectory_is_refused(api: Api, raced: dict[str, Any]) -> N
     refused(trajectory(raced["id"], format="xlsx"), 422, "format must be")
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 10_000_000}}])
     refused(trajectory(queued["id"]), 409, "its walk can be had as a file once it ended")
-    api.stop(
-        queued, *(api.get(f"/trainings/{training_id}") for training_id in queued["waiting_for"])
-    )
+    api.stop(queued)
 
 
 def test_each_file_has_the_slots_of_what_it_costs(api: Api) -> None:

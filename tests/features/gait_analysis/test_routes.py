@@ -100,6 +100,4 @@ def test_what_was_not_recorded_has_no_gait(api: Api) -> None:
     refused(api.call("GET", "/runs/nothing/gait"), 404, "nothing")
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 10_000_000}}])
     refused(api.call("GET", f"/runs/{queued['id']}/gait"), 409, "has no recording (yet)")
-    api.stop(
-        queued, *(api.get(f"/trainings/{training_id}") for training_id in queued["waiting_for"])
-    )
+    api.stop(queued)
