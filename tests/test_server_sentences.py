@@ -109,8 +109,9 @@ def why_sentences() -> Iterator[str]:
     ]
     for agent, steps in product(("greedy", "mcts", "informed", OWN), (1, 2)):
         first = Future(MADE, 0.01, 0.0246, 4, steps)
+        level = first._replace(action=Action(1, 2))
         for reward_m, more in product(
-            (0.01, 0.02, 0.005), ([], [first._replace(action=Action(1, 2))])
+            (0.01, 0.02, 0.005), ([], [level], [level._replace(return_m=0.02)])
         ):
             search = SearchFindings(compares(agent), 1500, [first, *more])
             parts.append(sentences_of(step(None, reward_m, None), search, names))

@@ -161,6 +161,8 @@ def closes_what_happens_to_the_robots(dashboard: Dashboard, link: str) -> None:
     )
     for control in closed:
         expect(control).to_be_disabled()
+    # Another run on the stage would close what was picked.
+    expect(dashboard.shown_run).to_contain_text("of 2")
     dashboard.stand_in_for_stage({"type": "hexapods:pick", "pick": PICK})
     menu = page.get_by_role("region", name=re.compile(", leg 1$"))
     expect(menu).to_contain_text("The lesson's card")

@@ -90,7 +90,9 @@ def _why_simulated(
     beside = ""
     if further:
         more = in_millimetres(chosen.return_m - further[0].return_m)
-        beside = f", {more} more than the next, {names.move(further[0].action)}"
+        is_level = more == in_millimetres(0.0)
+        beside = f", {'level with' if is_level else f'{more} more than'} the next, "
+        beside += names.move(further[0].action)
     return (
         f"It simulated {_counted(search.transitions, 'step')} and compared the {search.compares}: "
         f"this move came first with {in_millimetres(chosen.return_m)} in "
