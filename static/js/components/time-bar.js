@@ -201,11 +201,11 @@ function Below({ known: { unit, end, picture }, width }) {
     { kind: "last", at: end, text: last },
     ...ticks(end, wanted).map((tick) => ({ kind: "tick", at: tick, text: unit === "s" ? decimal(tick) : whole(tick) })),
   ].map((label) => ({ ...label, size: textWidth(label.text, 400) }));
-  const moment = { kind: "picture", at: picture, text: shown, size: textWidth(shown) + 2 * BUBBLE_PADDING_PX };
+  const moment = { kind: "bubble", at: picture, text: shown, size: textWidth(shown) + 2 * BUBBLE_PADDING_PX };
   return html`
     <div class="below-rail" aria-hidden="true">
       ${fittingLabels([moment, ...scaleLabels], end, width, TICK_GAP_PX).map(({ kind, at, text, left }) => html`
-        <span key=${kind === "picture" ? kind : at} class=${kind} style=${{ left: `${left}px` }}>${text}</span>
+        <span key=${kind === "bubble" ? kind : at} class=${kind} style=${{ left: `${left}px` }}>${text}</span>
       `)}
     </div>
   `;
