@@ -197,9 +197,10 @@ def was_taught(api: httpx2.Client, code: str, run_id: str, pupils: RestPupils) -
     values = api.get(f"trainings/{run_id}/q-table").json()["values"]
     untaught = api.get(f"trainings/{teaching['rival']['run_id']}/q-table").json()["values"]
 
-    # Whether it takes a step that is rebuked depends on which steps were pressed in time.
+    # How many presses are in time depends on the machine, and with them whether it takes a step
+    # that is rebuked.
     assert pupils.praised > 0
-    assert pupils.counted > PUPILS * (pupils.praised + pupils.rebuked) / 2
+    assert pupils.counted > PUPILS
     assert max(press["plus"] for press in teaching["presses"]) >= 26
     # A tenth of the pupils is of another opinion.
     assert max(press["minus"] for press in teaching["presses"]) >= 2
