@@ -23,6 +23,8 @@ from hexapods.shows.stage_frame import StageFrame
 
 FRAMES_PER_S = 30.0
 SEGMENT_FRAMES = 64
+_ROUNDED_S = 0.0005 + 1e-9
+"""Time by which the end of what is recorded may be told too late [s]."""
 LOWEST_LEVEL, HIGHEST_LEVEL = -3, 7
 """From 240 frames a second of the run's time to one in 4.3 s."""
 SCENES_PER_S = 5.0
@@ -144,6 +146,9 @@ class Replay:
     def segment_times_s(self, level: int, number: int) -> list[float]:
         """Return the times of a segment's frames that are recorded; the end of the run is the last.
 
+        Playheads tell in milliseconds how much is recorded: a segment that begins at the end as it
+        is told has the end as its frame.
+
         Raises:
             NoSuchSegment: if the segment is past the end, or nothing is recorded yet.
         """
@@ -152,14 +157,14 @@ class Replay:
             raise NoSuchSegment("nothing is recorded yet; request the segment again later")
         step_s, end_s = interval_s(level), recorded[-1][1]
         first = number * SEGMENT_FRAMES
-        if first * step_s > end_s:
+        if first * step_s > end_s + _ROUNDED_S:
             last = math.floor(end_s / step_s / SEGMENT_FRAMES)
             raise NoSuchSegment(
                 f"the recording ends at {end_s:.2f} s: at level {level} its last segment is {last}"
             )
         times_s = [(first + n) * step_s for n in range(SEGMENT_FRAMES)]
         recorded_times_s = [time_s for time_s in times_s if time_s <= end_s]
-        if len(recorded_times_s) < SEGMENT_FRAMES and self.is_complete:
+        if not recorded_times_s or (len(recorded_times_s) < SEGMENT_FRAMES and self.is_complete):
             recorded_times_s.append(end_s)
         return recorded_times_s
 

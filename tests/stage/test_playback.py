@@ -12,7 +12,13 @@ from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import finish_s
-from hexapods.shows.replay import FRAMES_PER_S, NoSuchSegment
+from hexapods.shows.replay import (
+    FRAMES_PER_S,
+    SEGMENT_FRAMES,
+    NoSuchSegment,
+    Replay,
+    interval_s,
+)
 from hexapods.shows.scene_view import scene_view
 from tests.stage.stage_parts import StageParts
 
@@ -152,6 +158,21 @@ def test_segments_cover_the_recording_to_its_last_moment(parts: StageParts) -> N
         assert np.diff(times_s[:-1]) == pytest.approx(interval_s)
         with pytest.raises(NoSuchSegment, match=f"its last segment is {number - 1}"):
             replay.segment_times_s(level, number)
+
+
+@pytest.mark.parametrize("is_complete", [True, False])
+def test_a_segment_that_begins_at_the_end_as_it_is_told_has_the_end(
+    parts: StageParts, monkeypatch: pytest.MonkeyPatch, *, is_complete: bool
+) -> None:
+    stored = replays_of(parts).get(parts.finished_race(LANES).id, "paper")
+    replay = Replay(stored.show, stored.label, is_complete=is_complete)
+    begin_s = 30 * SEGMENT_FRAMES * interval_s(-2)
+    for end_s in (begin_s - 0.0005, begin_s - 1e-9, begin_s):
+        monkeypatch.setattr(Replay, "recorded", ((0.0, end_s),))
+        assert replay.segment_times_s(-2, 30)[0] == end_s
+    monkeypatch.setattr(Replay, "recorded", ((0.0, begin_s - 0.0006),))
+    with pytest.raises(NoSuchSegment, match="its last segment is 29"):
+        replay.segment_times_s(-2, 30)
 
 
 def test_lanes_of_another_run_walk_along_as_ghosts_at_their_own_time(parts: StageParts) -> None:
