@@ -12,6 +12,7 @@ import httpx2
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from app.features.classroom.press_book import GRACE_STEPS
 from tests.browser.rooms import PUBLIC_URL, SCREEN, TOKEN, RoomPage, is_accessible, phone
 from tests.browser.serving import Serving, serving
 from tests.browser.type_sizes import small_texts
@@ -52,6 +53,8 @@ class RestPupils:
     Attributes:
         praised, rebuked: number of steps.
         counted: presses that the server took.
+        late: of each press that was refused as late, its step, and the steps in the picture then.
+        failed: other answers than those that a press may have.
     """
 
     def __init__(self, server: Serving, code: str, run_id: str, stack: ExitStack) -> None:
@@ -59,6 +62,8 @@ class RestPupils:
         self._teacher = stack.enter_context(server.api(TOKEN))
         self._clients = [_joined(server, code, stack) for _ in range(PUPILS)]
         self.praised = self.rebuked = self.counted = 0
+        self.late: list[tuple[int, float]] = []
+        self.failed: list[str] = []
         self._thread = threading.Thread(target=self._teach)
 
     def start(self) -> None:
@@ -71,6 +76,7 @@ class RestPupils:
         return self._teacher.get(str(self._teacher.base_url.join(path))).json()
 
     def _teach(self) -> None:
+        step_s = self._ask(f"/api/v1/rooms/{self._code}/teaching")["step_s"]
         for at_s, reward_m in moments_of(self._ask, self._code, self._run_id):
             value = 1 if reward_m > FORWARD_M else -1
             self.praised, self.rebuked = self.praised + (value > 0), self.rebuked + (value < 0)
@@ -79,7 +85,14 @@ class RestPupils:
                 wrong = number % 10 == 9
                 body = {"run_id": self._run_id, "at_s": at_s, "value": -value if wrong else value}
                 answer = client.post(f"rooms/{self._code}/presses", json=body)
-                self.counted += answer.status_code == 201
+                if answer.status_code == 201:
+                    self.counted += 1
+                elif "this step is over" in answer.text:
+                    stage = self._ask(f"/r/{self._code}/api/v1/stage")
+                    if stage["run_id"] == self._run_id:
+                        self.late.append((int(at_s / step_s), stage["time_s"] / step_s))
+                elif answer.status_code != 409:
+                    self.failed.append(answer.text)
 
 
 def _joined(server: Serving, code: str, stack: ExitStack) -> httpx2.Client:
@@ -198,9 +211,11 @@ def was_taught(api: httpx2.Client, code: str, run_id: str, pupils: RestPupils) -
     untaught = api.get(f"trainings/{teaching['rival']['run_id']}/q-table").json()["values"]
 
     # How many presses are in time depends on the machine, and with them whether it takes a step
-    # that is rebuked.
+    # that is rebuked. None is refused whose step is still open.
     assert pupils.praised > 0
     assert pupils.counted > PUPILS
+    assert pupils.failed == []
+    assert [late for late in pupils.late if late[1] < late[0] + 1 + GRACE_STEPS] == []
     assert max(press["plus"] for press in teaching["presses"]) >= 26
     # A tenth of the pupils is of another opinion.
     assert max(press["minus"] for press in teaching["presses"]) >= 2
