@@ -53,6 +53,15 @@ def open_jobs(store: RunStore) -> Iterator[Callable[[], Jobs]]:
         yield make
 
 
+def start_race_and_practise(jobs: Jobs, store: RunStore) -> tuple[Run, str]:
+    """Start a race that waits for a long training; return both once the training gets on."""
+    lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
+    race = jobs.start(RaceStart(WALK, lanes, steps=5, seed=0))
+    (practice_id,) = race.waiting_for
+    wait_for_progress(store, store.get(practice_id))
+    return race, practice_id
+
+
 def create(store: RunStore, run: Run) -> Run:
     store.create(run)
     return run
@@ -148,10 +157,7 @@ def test_race_whose_training_was_stopped_goes_on_with_it(
 ) -> None:
     """The race was queued behind the training, and was stopped with it before it ran."""
     jobs = open_jobs()
-    lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
-    race = jobs.start(RaceStart(WALK, lanes, steps=5, seed=0))
-    (practice_id,) = race.waiting_for
-    wait_for_progress(store, store.get(practice_id))
+    race, practice_id = start_race_and_practise(jobs, store)
     jobs.stop(race.id)
     assert wait_until_ended(store, store.get(practice_id)).state == "stopped"
     assert store.get(race.id).state == "stopped"
@@ -167,10 +173,7 @@ def test_race_is_not_queued_behind_a_training_that_is_still_ending(
 ) -> None:
     """The end of the training is settled after it is stored: it must not end the new race."""
     jobs = open_jobs()
-    lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
-    race = jobs.start(RaceStart(WALK, lanes, steps=5, seed=0))
-    (practice_id,) = race.waiting_for
-    wait_for_progress(store, store.get(practice_id))
+    race, practice_id = start_race_and_practise(jobs, store)
     may_settle = threading.Event()
     process_ended = Job.process_ended
 
@@ -337,10 +340,7 @@ def test_resumed_race_resumes_its_training_first(
     store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
-    lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
-    race = first.start(RaceStart(WALK, lanes, steps=5, seed=0))
-    (practice_id,) = race.waiting_for
-    wait_for_progress(store, store.get(practice_id))
+    race, practice_id = start_race_and_practise(first, store)
     first.close()
     assert store.get(race.id).state == store.get(practice_id).state == "interrupted"
     assert store.get(race.id).waiting_for == ()
