@@ -186,28 +186,40 @@ class Jobs:
             Conflict, InvalidInput: if its state does not allow it, or what it needs is missing.
             Busy: if the queue is full.
         """
-        self._await_process(run_id)
-        with self._changed:
-            run = self._store.get(run_id)
-            if run.state in RESUMABLE:
-                runs = resumed_runs(run, self._store)
-                ending = [queued.id for queued in runs if self._supervisor.find(queued.id)]
-                if not ending:
+        while True:
+            with self._changed:
+                run = self._store.get(run_id)
+                ending = self._ending(run)
+                if not ending and run.state in RESUMABLE:
+                    runs = resumed_runs(run, self._store)
                     for queued in runs:
                         self._check_needed_by_none(queued)
                     return self._enqueue(runs, resumed=True)
-            else:
-                try:
-                    return self._resume_paused(run)
-                except Conflict as conflict:
-                    if conflict.state not in RESUMABLE:
-                        raise
-                # The process died between the check and the change: the run is queued again.
-                ending = [run_id]
-        # The end of a training would otherwise end the race that is queued again behind it.
-        for training_id in ending:
-            self._await_process(training_id)
-        return self.resume(run_id)
+                if not ending:
+                    try:
+                        return self._resume_paused(run)
+                    except Conflict as conflict:
+                        # Its process may have died since: then the run is queued again.
+                        if conflict.state not in RESUMABLE:
+                            raise
+            for job in ending:
+                self._await_exit(job)
+
+    def _ending(self, run: Run) -> list[Job]:
+        """Return the jobs that end now, of a run that ended and of the trainings that it needs.
+
+        A training that is being stopped would otherwise end the race that is queued again behind
+        it.
+        """
+        ending = []
+        for run_id in dict.fromkeys((run.id, *filter(None, run.lane_training_ids))):
+            job = self._supervisor.find(run_id)
+            if job is None:
+                continue
+            is_being_stopped = job.stopping and run_id != run.id
+            if is_being_stopped or self._store.get(run_id).state not in NOT_ENDED:
+                ending.append(job)
+        return ending
 
     def _resume_paused(self, run: Run) -> Run:
         choices = " or ".join(sorted(PAUSED | RESUMABLE))
@@ -430,10 +442,13 @@ class Jobs:
             Conflict: if it does not exit in time.
         """
         job = self._supervisor.find(run_id)
-        if job is None or (run := self._store.get(run_id)).state in NOT_ENDED:
-            return
+        if job is not None and self._store.get(run_id).state not in NOT_ENDED:
+            self._await_exit(job)
+
+    def _await_exit(self, job: Job) -> None:
         if not job.gone.wait(_EXIT_S):
-            raise Conflict(f"{run.kind} {run_id} is still ending; try again", run.state)
+            run = job.last
+            raise Conflict(f"{run.kind} {run.id} is still ending; try again", run.state)
 
     def _change_state(self, job: Job, from_states: frozenset[State], to_state: State) -> Run:
         """Change a job's state in the store; after a failed write it is reconciled later."""

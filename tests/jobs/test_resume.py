@@ -195,6 +195,27 @@ def test_race_is_not_queued_behind_a_training_that_is_still_ending(
     wait_until_ended(store, store.get(practice_id))
 
 
+def test_race_is_not_queued_behind_a_training_that_is_being_stopped(
+    store: RunStore, open_jobs: Callable[[], Jobs], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    jobs = open_jobs()
+    race, practice_id = start_race_and_practise(jobs, store)
+    pid = pid_of(store.get(practice_id))
+    os.kill(pid, signal.SIGSTOP)  # so that it cannot obey
+    jobs.stop(race.id)
+    assert store.get(practice_id).state == "running"
+    with monkeypatch.context() as patch:
+        patch.setattr("app.jobs.jobs._EXIT_S", 0.1)
+        with pytest.raises(Conflict, match=f"training {practice_id} is still ending"):
+            jobs.resume(race.id)
+    assert store.get(race.id).state == "stopped"
+    os.kill(pid, signal.SIGCONT)
+    assert jobs.resume(race.id).waiting_for == (practice_id,)
+    wait_until(lambda: store.get(practice_id).state == "running")
+    assert jobs.stop(race.id).state == "stopped"
+    wait_until_ended(store, store.get(practice_id))
+
+
 def test_race_with_the_table_of_a_stopped_training_does_not_train_it_further(
     store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
